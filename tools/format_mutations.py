@@ -226,4 +226,6 @@ MUTATIONS = [
     ("an eye's picture states the target between the eyes", "robust/cli_cameras", ("src/session/writing/picture_metadata.cpp", "choice.eye_offset == 0 ? choice.target : std::nullopt", "choice.target")),
     ("pbrt: a light that is scaled alike in all directions is stretched", "unit/read_pbrt_lights", ("src/formats/described/light_tables.cpp", "differs_from_turn(world_from_light, dot(x, x))", "differs_from_turn(world_from_light, 1)")),
     ("materials with other lobes share a shading group", "unit/shading_groups", ("src/shading/shading_groups.cpp", "    add(m.has_coat());\n", "")),
+    ("nodes that an animation hides stay", "unit/read_gltf_animations", ("src/scene/pose/posed_scene.cpp", "!is_shown_[instance.node] || is_singular(world)", "is_singular(world)")),
+    ("a light of a hidden node shines at rest", "unit/read_gltf_animations", ("src/scene/pose/posed_scene.cpp", "hide_lights_at_rest(); // at another", "// at another")),
 ]

@@ -34,11 +34,16 @@ std::vector<bool> may_move(const Scene& scene) {
     std::vector<bool> moving(scene.instances.size());
     if (scene.animations.empty()) return moving;
     const std::vector<bool> is_repositioned = moving_nodes(scene);
-    std::vector<bool> is_reshaped(scene.nodes.size());
+    std::vector<bool> is_reshaped(scene.nodes.size()), may_vanish(scene.nodes.size());
     for (const Animation& animation : scene.animations) {
         for (const AnimationChannel& channel : animation.channels) {
             if (channel.part == AnimatedPart::Weights) is_reshaped[channel.target] = true;
+            if (channel.part == AnimatedPart::Visibility) may_vanish[channel.target] = true;
         }
+    }
+    for (const uint32_t node : parents_first(scene.nodes)) {
+        const uint32_t parent = scene.nodes[node].parent;
+        if (parent != kNoNode && may_vanish[parent]) may_vanish[node] = true;
     }
     std::vector<bool> skin_moves;
     for (const Skin& skin : scene.skins) {
@@ -49,7 +54,8 @@ std::vector<bool> may_move(const Scene& scene) {
         if (index == kNoNode) continue;
         const uint32_t skin = scene.nodes[index].skin; // a skinned mesh moves with its joints, not with the node that
                                                        // shows it
-        moving[i] = is_reshaped[index] || (skin == kNoSkin ? is_repositioned[index] : skin_moves[skin]);
+        moving[i] =
+            is_reshaped[index] || may_vanish[index] || (skin == kNoSkin ? is_repositioned[index] : skin_moves[skin]);
     }
     return moving;
 }

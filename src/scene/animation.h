@@ -17,6 +17,7 @@ enum class AnimatedPart : uint8_t { // properties of nodes, then of cameras, the
     Translation,
     Rotation,
     Scale,
+    Visibility, // whether a node and its descendants are shown
     Weights,
     CameraFov,
     CameraHeight, // height of an orthographic view
@@ -36,11 +37,11 @@ constexpr bool is_of_light(AnimatedPart part) {
 }
 constexpr bool is_of_material(AnimatedPart part) { return part >= AnimatedPart::MaterialNumbers; }
 constexpr bool is_of_texture(AnimatedPart part) { return part >= AnimatedPart::TextureOffset; }
-constexpr bool places_node(AnimatedPart part) { return part <= AnimatedPart::Scale; }
+constexpr bool places_node(AnimatedPart part) { return part <= AnimatedPart::Visibility; }
 /// Returns the number of components of a value; 0 for weights, of which a mesh has one per morph target, and for
 /// numbers of materials.
 constexpr std::size_t numbers_of(AnimatedPart part) {
-    constexpr uint8_t kNumbers[] = {3, 4, 3, 0, 1, 1, 3, 1, 1, 1, 0, 2, 2, 1}; // in the order of the enumerators
+    constexpr uint8_t kNumbers[] = {3, 4, 3, 1, 0, 1, 1, 3, 1, 1, 1, 0, 2, 2, 1}; // in the order of the enumerators
     static_assert(sizeof kNumbers == static_cast<std::size_t>(AnimatedPart::TextureRotation) + 1);
     return kNumbers[static_cast<std::size_t>(part)];
 }
@@ -57,8 +58,8 @@ struct AnimationChannel {
     /// Values for all times, one after the other; for CubicSpline three each: in-tangent, value, out-tangent, with
     /// tangents per second. A value has 3 components (Translation in metres, Scale, LightIntensity), 4 (Rotation: a
     /// nonzero quaternion x, y, z, w), as many as the node has morph_weights or as a channel of MaterialNumbers has
-    /// `numbers`, 2 (TextureOffset, TextureScale) or 1 (CameraFov, cones and TextureRotation in radians, CameraHeight
-    /// and LightRange in metres).
+    /// `numbers`, 2 (TextureOffset, TextureScale) or 1 (Visibility: 0 if hidden; CameraFov, cones and TextureRotation
+    /// in radians, CameraHeight and LightRange in metres).
     std::vector<float> values;
     /// The numbers of a material that the channel changes, in the order of visit_parameters, where the first is 0. One
     /// outside its range is clamped. A channel of a texture has the slots that it changes, in the order of

@@ -75,6 +75,15 @@ std::vector<Transform> world_from_nodes(std::span<const NodeTransform> transform
     return world;
 }
 
+std::vector<bool> visible_nodes(std::span<const Node> nodes, std::span<const uint32_t> parents_first) {
+    std::vector<bool> are_visible(nodes.size());
+    for (const uint32_t node : parents_first) {
+        const uint32_t parent = nodes[node].parent;
+        are_visible[node] = nodes[node].is_visible && (parent == kNoNode || are_visible[parent]);
+    }
+    return are_visible;
+}
+
 std::vector<uint32_t> parents_first(std::span<const Node> nodes) {
     enum class State : uint8_t { New, OnChain, Placed, Circular };
     std::vector<State> states(nodes.size(), State::New);

@@ -34,6 +34,8 @@ struct Node {
     std::variant<NodePose, DoubleTransform> pose; // parent from local; a matrix cannot be animated
     std::vector<float> morph_weights;             // weights at rest of the mesh's morph targets; empty: the mesh has
                                                   // none
+    bool is_visible = true;                       // whether it shows what it and its descendants hold; an animation
+                                                  // may change it
 };
 
 /// The nodes that move the vertices of a skinned mesh.
@@ -62,6 +64,9 @@ Transform world_from_node(const NodeTransform& transform, DoubleVec3 origin);
 /// parent.
 std::vector<NodeTransform> transforms_of(std::span<const Node> nodes, std::span<const uint32_t> parents_first);
 std::vector<Transform> world_from_nodes(std::span<const NodeTransform> transforms, DoubleVec3 origin);
+
+/// [node] whether a node and all its ancestors are visible at rest.
+std::vector<bool> visible_nodes(std::span<const Node> nodes, std::span<const uint32_t> parents_first);
 
 /// All nodes, each after its parent; fewer if there is a cycle. Every parent is in range. Takes linear time, without
 /// recursion.

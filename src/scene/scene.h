@@ -37,8 +37,8 @@ struct Instance {
                                // (origin_of)
     Transform node_from_local; // transform within the node, without a skin: world_from_local is the product of the
                                // node's and this
-    bool is_hidden = false;    // the transform is singular, for example by a scale of 0: it does not exist, and
-                               // world_from_local is undefined
+    bool is_hidden = false;    // an animation hides its node, or the transform is singular, for example by a scale of
+                               // 0: it does not exist, and world_from_local is undefined
     /// True for a generated ground: rays hit it, but ids, layers and alpha treat it as background, and bounds_of()
     /// ignores it. Only the last instance may be one.
     bool is_background = false;

@@ -264,8 +264,8 @@ TEST_CASE("KHR_animation_pointer animates numbers of materials, within their ran
     CHECK(material.alpha == 0.25f);
     CHECK(material.emission == Rgb{2, 1, 4});
     CHECK(material.metallic == 1);
-    PosedScene coated(test::read_gltf_text(
-        document(channel("1/extensions/KHR_materials_clearcoat/clearcoatFactor", 0)), messages));
+    PosedScene coated(
+        test::read_gltf_text(document(channel("1/extensions/KHR_materials_clearcoat/clearcoatFactor", 0)), messages));
     CHECK(coated.set_time(1).lights_changed); // light leaves an emitter through its coat
     CHECK(posed.set_time(1).is_empty());
     posed.set_time(0.5);
@@ -377,6 +377,82 @@ TEST_CASE("KHR_animation_pointer animates the transforms of textures, whose othe
                                   channel("occlusionTexture" + transform + "scale", 0)),
                          messages);
     CHECK(messages.left_out().size() == 2);
+}
+
+TEST_CASE("KHR_animation_pointer shows and hides nodes with all that they hold") {
+    GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});            // 0
+    builder.add("SCALAR", std::vector<float>{1, 2});                               // 1
+    builder.add("SCALAR", std::vector<uint8_t>{1, 0});                             // 2
+    builder.add("SCALAR", std::vector<uint8_t>{0, 1});                             // 3
+    builder.add("SCALAR", std::vector<float>{0, 1});                               // 4
+    builder.add("VEC4", std::vector<uint8_t>{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}); // 5
+    builder.add("VEC4", std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});   // 6
+    const auto channel = [](int node, int number) {
+        return R"({"sampler":)" + std::to_string(number) +
+               R"(,"target":{"path":"pointer","extensions":{"KHR_animation_pointer":{"pointer":"/nodes/)" +
+               std::to_string(node) + R"(/extensions/KHR_node_visibility/visible"}}}})";
+    };
+    const std::string hidden = R"("extensions":{"KHR_node_visibility":{"visible":false}})";
+    const auto document = [&](const std::string& more_samplers, const std::string& channels) {
+        return builder.json(
+            R"("extensionsUsed":["KHR_animation_pointer","KHR_node_visibility","KHR_lights_punctual"],)"
+            R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","intensity":5}]}},)"
+            R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]},)"
+            R"({"primitives":[{"attributes":{"POSITION":0,"JOINTS_0":5,"WEIGHTS_0":6}}]}],"skins":[{"joints":[4]}],)"
+            R"("nodes":[{"mesh":0},{)" +
+            hidden +
+            R"(,"children":[2,3,5]},)"
+            R"({"mesh":0,"translation":[2,0,0]},{"extensions":{"KHR_lights_punctual":{"light":0}}},)"
+            R"({"mesh":0,)" +
+            hidden + R"(},{"mesh":1,"skin":0}],"animations":[{"samplers":[)" +
+            sampler(1, 2, R"(,"interpolation":"STEP")") + "," + sampler(1, 3) + more_samplers + R"(],"channels":[)" +
+            channels + "]}]");
+    };
+    // Node 0 vanishes at 2 s, node 1 appears then with a mesh, a light and a skinned mesh; node 4 stays hidden.
+    Messages messages;
+    PosedScene posed(test::read_gltf_text(document("", channel(0, 0) + "," + channel(1, 1)), messages));
+    CHECK(messages.left_out().empty());
+    const Scene& scene = posed.scene();
+    REQUIRE(scene.instances.size() == 3);
+    REQUIRE(scene.lights.size() == 1);
+    const auto seen = [&] {
+        std::vector<uint32_t> nodes;
+        for (const Instance& instance : scene.instances) {
+            if (!instance.is_hidden) nodes.push_back(instance.node);
+        }
+        return nodes;
+    };
+    CHECK(seen() == std::vector<uint32_t>{0});
+    CHECK(scene.lights[0].intensity.g == 0);
+    posed.edit([](Scene& rest) {
+        CHECK(rest.lights[0].intensity.g == 5);
+        return SceneUpdate{};
+    });
+    CHECK(scene.lights[0].intensity.g == 0);
+    CHECK(posed.set_time(1.9).is_empty());
+    const SceneUpdate update = posed.set_time(2);
+    CHECK(update.moved_instances == std::vector<uint32_t>{0, 1, 2});
+    CHECK(update.lights_changed);
+    CHECK(seen() == std::vector<uint32_t>{2, 5});
+    CHECK(scene.lights[0].intensity.g == 5);
+    CHECK(scene.instances[1].world_from_local.translation.x == 2);
+    const PosedScene::Placements before = posed.placements_at(1);
+    CHECK(before.instances[0]);
+    CHECK_FALSE(before.instances[1]);
+    CHECK(seen() == std::vector<uint32_t>{2, 5});
+    posed.set_time(0);
+    CHECK(seen() == std::vector<uint32_t>{0});
+
+    // Between values there is nothing, so a spline has no meaning, and floats are read as bytes are.
+    PosedScene by_floats(test::read_gltf_text(document("," + sampler(1, 4), channel(1, 2)), messages));
+    by_floats.set_time(1.5);
+    CHECK(by_floats.scene().instances.at(1).is_hidden);
+    by_floats.set_time(2);
+    CHECK_FALSE(by_floats.scene().instances.at(1).is_hidden);
+    CHECK(messages.left_out().empty());
+    test::read_gltf_text(document("," + sampler(1, 2, R"(,"interpolation":"CUBICSPLINE")"), channel(0, 2)), messages);
+    CHECK(messages.left_out().size() == 1);
 }
 
 TEST_CASE("nodes with one mesh share it, except those with animated weights") {

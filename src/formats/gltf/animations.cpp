@@ -110,6 +110,7 @@ std::vector<uint32_t> held_by(const std::vector<Held>& all, const Holds& holds) 
     return indices;
 }
 
+constexpr std::string_view kVisible = "extensions/KHR_node_visibility/visible";
 constexpr std::string_view kNodePaths[] = {"translation", "rotation", "scale", "weights"};
 constexpr std::string_view kLights = "/extensions/KHR_lights_punctual/lights/";
 
@@ -137,6 +138,8 @@ std::optional<Target> pointed_at(const Document& document, const JsonValue& json
             return node_target(document, json, *node, *part_named(path), scene);
         }
     }
+    if (const auto node = node_of_pointer(document, pointer, kVisible))
+        return Target{.part = AnimatedPart::Visibility, .indices = {*node}};
     const std::vector<JsonValue>& nodes = document.table("nodes");
     const auto holders_of_light = [&](uint32_t number) {
         std::vector<uint32_t> holders = held_by(scene.lights, [&](uint32_t node) {
@@ -182,8 +185,8 @@ std::optional<Target> read_target(const Document& document, const JsonValue& tar
             sink.leave_out(
                 {pointer.location(),
                  fmt::format(
-                     "\"{}\" is not animated; expected a node's translation, rotation, scale or "
-                     "weights, a camera's /perspective/yfov or /orthographic/ymag, a light's color, "
+                     "\"{}\" is not animated; expected a node's translation, rotation, scale, weights or "
+                     "visibility, a camera's /perspective/yfov or /orthographic/ymag, a light's color, "
                      "intensity, range, /spot/innerConeAngle or /spot/outerConeAngle, or a material's factor or "
                      "KHR_texture_transform",
                      shortened(pointer.to_string()))});
@@ -219,9 +222,14 @@ AnimationChannel read_keys(const Document& document, Buffers& buffers, const Jso
     const Accessor values(document, buffers, output, {target.is_scalar ? ElementType::Scalar : element_of(target)});
     if (times.component_type() != ComponentType::Float)
         throw input.error("key times are not floats; expected component type 5126");
-    if (values.component_type() != ComponentType::Float && !(takes_integers(channel.part) && values.is_normalized())) {
-        throw output.error("the values must be floats, or normalized integers for a rotation or weights");
+    const bool is_boolean = channel.part == AnimatedPart::Visibility && values.component_type() == ComponentType::UInt8;
+    if (values.component_type() != ComponentType::Float && !is_boolean &&
+        !(takes_integers(channel.part) && values.is_normalized())) {
+        throw output.error("the values must be floats, normalized integers for a rotation or weights, or unsigned "
+                           "bytes for a visibility");
     }
+    if (channel.part == AnimatedPart::Visibility && channel.interpolation == Interpolation::Linear)
+        channel.interpolation = Interpolation::Step;
     const bool has_weights = channel.part == AnimatedPart::Weights;
     const uint64_t a_key = (channel.interpolation == Interpolation::CubicSpline ? 3 : 1) *
                            (has_weights ? scene.nodes[target.indices[0]].morph_weights.size() : 1);
@@ -264,14 +272,17 @@ bool attenuates_medium(const Target& target, const Scene& scene) {
 
 } // namespace
 
-std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::span<const Clip> clips) {
+namespace {
+
+/// Returns the nodes whose property at `path` a channel of a playing clip changes.
+std::set<uint32_t> nodes_animated_at(std::string_view path, const Document& document, std::span<const Clip> clips) {
     std::set<uint32_t> nodes;
     const auto inspect = [&](const JsonValue& channel) {
         const JsonValue target = channel.at("target");
         if (const auto extension = target.extension("KHR_animation_pointer")) {
             const std::string pointer = extension->string_or("pointer", "");
-            if (const auto node = node_of_pointer(document, pointer, "weights")) nodes.insert(*node);
-        } else if (const auto node = target.find("node"); node && target.string_or("path", "") == "weights") {
+            if (const auto node = node_of_pointer(document, pointer, path)) nodes.insert(*node);
+        } else if (const auto node = target.find("node"); node && target.string_or("path", "") == path) {
             nodes.insert(document.index_into("nodes", *node));
         }
     };
@@ -284,6 +295,16 @@ std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::sp
         }
     }
     return nodes;
+}
+
+} // namespace
+
+std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::span<const Clip> clips) {
+    return nodes_animated_at("weights", document, clips);
+}
+
+std::set<uint32_t> nodes_with_animated_visibility(const Document& document, std::span<const Clip> clips) {
+    return nodes_animated_at(kVisible, document, clips);
 }
 
 void read_animations(const Document& document, Buffers& buffers, const Materials& materials, Scene& scene,

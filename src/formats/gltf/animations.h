@@ -1,8 +1,8 @@
 #pragma once
 
 // Animations as key frames. Source: glTF 2.0 section 3.11; KHR_animation_pointer for the properties of nodes that
-// have a path of their own, the field of view of perspective cameras, colour or intensity of punctual lights, and the
-// numbers of materials (material_pointers.h).
+// have a path of their own, their visibility (KHR_node_visibility), the field of view of perspective cameras, colour or
+// intensity of punctual lights, and the numbers of materials (material_pointers.h).
 
 #include <cstdint>
 #include <set>
@@ -16,6 +16,8 @@ namespace pertev::gltf {
 
 /// Nodes whose morph weights are changed by a channel of a playing clip. Reads only that part of the animations.
 std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::span<const Clip> clips);
+/// Nodes that a channel of a playing clip shows or hides.
+std::set<uint32_t> nodes_with_animated_visibility(const Document& document, std::span<const Clip> clips);
 
 /// Fills scene.animations with the clips that play, and the end of each clip in scene.clips; nodes, cameras, lights
 /// and clips have been read. Channels of clips that do not play cause no messages. An unreadable channel is left out

@@ -119,7 +119,8 @@ private:
                                             .material = part.material,
                                             .world_from_local = world_from_local,
                                             .node = index,
-                                            .node_from_local = m});
+                                            .node_from_local = m,
+                                            .is_hidden = !nodes_.is_visible_at_rest(index)});
             }
         }
         if (scene_.instances.size() > kMaxInstances) {

@@ -74,7 +74,8 @@ Scene read_asset(const std::filesystem::path& path, std::vector<std::byte> bytes
     choose(document, buffers, options, scene, sink);
     choose_variant(document, buffers, options, scene, sink);
     read_credits(document, scene, sink);
-    NodeGraph nodes(document, scene.file_scene, sink, place.base);
+    NodeGraph nodes(document, scene.file_scene, nodes_with_animated_visibility(document, scene.clips), sink,
+                    place.base);
     ExternalAssets assets(document, buffers, access, nodes, options, place, sink);
 
     TextureLoader loader(access, sink);

@@ -102,12 +102,14 @@ PosedScene::PosedScene(Scene rest, bool leaves_vertices)
     : scene_(std::move(rest)), cameras_at_rest_(scene_.cameras), lights_at_rest_(scene_.lights),
       parents_first_(parents_first(scene_.nodes)), node_moves_(moving_nodes(scene_)), instance_moves_(may_move(scene_)),
       node_transforms_(transforms_of(scene_.nodes, parents_first_)),
-      world_from_node_(world_from_nodes(node_transforms_, scene_.origin_in_file)), cameras_(scene_.cameras),
-      lights_(scene_.lights), leaves_vertices_(leaves_vertices), moved_(scene_.instances.size()),
-      deformed_(scene_.meshes.size()), replaced_(scene_.meshes.size()) {
+      world_from_node_(world_from_nodes(node_transforms_, scene_.origin_in_file)),
+      is_shown_(visible_nodes(scene_.nodes, parents_first_)), cameras_(scene_.cameras), lights_(scene_.lights),
+      leaves_vertices_(leaves_vertices), moved_(scene_.instances.size()), deformed_(scene_.meshes.size()),
+      replaced_(scene_.meshes.size()) {
     for (const Node& node : scene_.nodes) {
         const NodePose* pose = std::get_if<NodePose>(&node.pose);
         node_poses_.push_back(pose == nullptr ? NodePose{} : *pose);
+        is_visible_.push_back(node.is_visible);
         morph_weights_.push_back(node.morph_weights);
     }
     for (const Animation& animation : scene_.animations) {
@@ -117,12 +119,20 @@ PosedScene::PosedScene(Scene rest, bool leaves_vertices)
             materials_.push_back({channel.target, at_rest, at_rest, {}});
         }
     }
+    hide_lights_at_rest();
     drop_shapes_at_rest();
     for (std::size_t i = 0; i < scene_.shapes.size(); ++i) at_rest_.push_back(wanted(i));
     poses_ = on_host_ = at_rest_;
     find_shapes_to_leave();
     if (!is_animated()) return;
     for (const Mesh& mesh : scene_.meshes) bounds_.push_back(bounds_of(mesh));
+}
+
+/// Darkens the lights of nodes that are not visible at rest.
+void PosedScene::hide_lights_at_rest() {
+    for (Light& light : scene_.lights) {
+        if (light.node != kNoNode && !is_shown_[light.node]) light.intensity = {0, 0, 0};
+    }
 }
 
 /// Removes the shapes of meshes that no animation changes, which are no longer needed.
@@ -188,12 +198,14 @@ SceneUpdate PosedScene::edit(const std::function<SceneUpdate(Scene&)>& edit) {
     cameras_ = cameras_at_rest_ = scene_.cameras;
     for (MovingMaterial& material : materials_) material.rest = scene_.materials[material.index];
     if (update.materials_changed) find_shapes_to_leave();
+    hide_lights_at_rest(); // at another time, set_time() follows
     return update;
 }
 
 PosedScene::Placements PosedScene::placements_at(double time_s) {
     const auto node_poses = node_poses_;
     const auto morph_weights = morph_weights_;
+    const auto is_visible = is_visible_, is_shown = is_shown_;
     const auto saved_transforms = node_transforms_;
     const auto world_from_node = world_from_node_;
     const auto cameras = cameras_, placed_cameras = scene_.cameras;
@@ -207,10 +219,12 @@ PosedScene::Placements PosedScene::placements_at(double time_s) {
         if (!instance_moves_[i] || scene_.nodes[instance.node].skin != kNoSkin) continue;
         const Transform world =
             placed_in(node_transforms_[instance.node], instance.node_from_local, scene_.origin_in_file);
-        if (!is_singular(world)) placements.instances[i] = world;
+        if (is_shown_[instance.node] && !is_singular(world)) placements.instances[i] = world;
     }
     node_poses_ = node_poses;
     morph_weights_ = morph_weights;
+    is_visible_ = is_visible;
+    is_shown_ = is_shown;
     node_transforms_ = saved_transforms;
     world_from_node_ = world_from_node;
     cameras_ = cameras;
@@ -240,6 +254,9 @@ void PosedScene::read_channels(double time_s) {
                 break;
             case AnimatedPart::Scale:
                 node_poses_[channel.target].scale = to_double(Vec3{v[0], v[1], v[2]});
+                break;
+            case AnimatedPart::Visibility:
+                is_visible_[channel.target] = v[0] != 0;
                 break;
             case AnimatedPart::Weights:
                 morph_weights_[channel.target] = v;
@@ -310,6 +327,7 @@ void PosedScene::update_nodes() {
         const uint32_t parent = scene_.nodes[node].parent;
         node_transforms_[node] = parent == kNoNode ? local : compose(node_transforms_[parent], local);
         world_from_node_[node] = world_from_node(node_transforms_[node], scene_.origin_in_file);
+        is_shown_[node] = is_visible_[node] && (parent == kNoNode || is_shown_[parent]);
     }
 }
 
@@ -353,13 +371,15 @@ void PosedScene::shape_meshes() {
 void PosedScene::update_instances() {
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
         Instance& instance = scene_.instances[i];
-        if (!instance_moves_[i] || scene_.nodes[instance.node].skin != kNoSkin) continue;
+        if (!instance_moves_[i]) continue;
+        const bool has_skin = scene_.nodes[instance.node].skin != kNoSkin; // the joints have moved it
         const Transform world =
-            placed_in(node_transforms_[instance.node], instance.node_from_local, scene_.origin_in_file);
-        const bool is_hidden = is_singular(world);
-        const Transform placement = is_hidden ? Transform() : world;
-        if (!same_bits(placement, instance.world_from_local) || is_hidden != instance.is_hidden) moved_[i] = true;
-        instance.world_from_local = placement;
+            has_skin ? Transform()
+                     : placed_in(node_transforms_[instance.node], instance.node_from_local, scene_.origin_in_file);
+        const bool is_hidden = !is_shown_[instance.node] || is_singular(world);
+        const bool stays = is_hidden || same_bits(world, instance.world_from_local);
+        if (!stays || is_hidden != instance.is_hidden) moved_[i] = true;
+        instance.world_from_local = is_hidden ? Transform() : world;
         instance.is_hidden = is_hidden;
     }
 }
@@ -402,7 +422,7 @@ void PosedScene::update_lights() {
         if (light.node != kNoNode && node_moves_[light.node]) {
             bool stands = transform_light(world_from_node_[light.node], light);
             light.direction = normalize_safely(light.direction);
-            stands = stands && is_oriented(light) &&
+            stands = stands && is_shown_[light.node] && is_oriented(light) &&
                      is_within_limits(make_translation(light.position), Bounds3{{0, 0, 0}, {0, 0, 0}});
             if (!stands) {
                 light = rest;

@@ -8,8 +8,8 @@
 // which computes the same. If the constructor requests it, the vertices of meshes without emission are left, unless
 // at that time a joint mirrors or an instance is baked (is_skewed).
 //
-// A transform that is singular or not finite at a time hides its instance; a camera whose direction it loses keeps
-// its pose at rest, and a light gives no light.
+// A transform that is singular or not finite at a time, or a node that is not visible then, hides its instance, and a
+// light gives no light. A camera whose direction is lost keeps its pose at rest.
 
 #include <functional>
 #include <map>
@@ -53,6 +53,7 @@ public:
     Placements placements_at(double time_s);
 
 private:
+    void hide_lights_at_rest();
     void drop_shapes_at_rest();
     void find_shapes_to_leave();
     void read_channels(double time_s);
@@ -74,7 +75,8 @@ private:
     // Per node, at the time.
     std::vector<NodePose> node_poses_; // for nodes without a matrix
     std::vector<NodeTransform> node_transforms_;
-    std::vector<Transform> world_from_node_; // from places_, relative to the scene's origin
+    std::vector<Transform> world_from_node_;  // from places_, relative to the scene's origin
+    std::vector<bool> is_visible_, is_shown_; // by itself, and with all its ancestors
     std::vector<std::vector<float>> morph_weights_;
     std::vector<Camera> cameras_; // only field of view and height are used
     std::vector<Light> lights_;   // only intensity, range and cone are used
