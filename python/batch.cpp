@@ -290,6 +290,7 @@ ExrMetadata PythonBatch::metadata(std::size_t picture) const {
     const std::optional<std::string> known = hash(picture);
     ExrMetadata metadata = picture_metadata(facts_of(record_of(picture), ids_of(picture)), stats(), known.value_or(""));
     if (!known) leave_out("pertev.hash", metadata);
+    if (!arrays_.denoiser.empty()) metadata.emplace_back("pertev.denoiser", arrays_.denoiser);
     if (made_by_.is_single) return metadata;
     for (const char* of_all : {"pertev.rays", "pertev.invalid_samples", "pertev.render_seconds"})
         leave_out(of_all, metadata);

@@ -19,6 +19,7 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/version.h"
+#include "denoise/oidn/oidn_library.h"
 #include "formats/builtin_scenes.h"
 #include "formats/cameras/read_cameras.h"
 #include "formats/gltf_writer/write_glb.h"
@@ -369,6 +370,7 @@ NB_MODULE(_core, module) {
     });
     nb::set_leak_warnings(false); // a thread may still render when the interpreter ends
     module.attr("__version__") = version();
+    OidnLibrary::look_below(nb::cast<std::string>(nb::module_::import_("sys").attr("prefix")));
     define_result(module);
     define_batch(module);
     module.def(

@@ -19,6 +19,7 @@
 #include "render/camera_view.h"
 #include "render/film_channels.h"
 #include "session/writing/metadata_json.h"
+#include "session/writing/write_picture.h"
 
 namespace nb = nanobind;
 
@@ -91,7 +92,7 @@ nb::object layer_of(nb::handle owner, const char* name) {
 }
 
 nb::dict info_of(PythonResult& self) {
-    return info_of_metadata(picture_metadata(self.facts(), self.result, hash_of(self)));
+    return info_of_metadata(file_metadata(self.facts(), self.result, hash_of(self)));
 }
 
 /// Returns the record of a rendered picture. Throws AttributeError for a merged one.

@@ -4,8 +4,10 @@ import difflib
 import math
 import operator
 import os
+from collections.abc import Mapping
 
 from . import _core
+from ._arrays import on_host
 from .errors import Error, input_error
 
 OF_PICTURES = {row["name"]: row for row in _core.settings()}
@@ -14,6 +16,7 @@ OF_PARTS = {row["name"]: row for row in _core.part_settings()}
 OF_STILLS = {**OF_PICTURES, **OF_PARTS}
 SEPARATORS = {"A:B": ":", "I/N": "/"}  # by the form of a value
 TOO_LARGE = "the number is too large"
+MATRICES = {"camera_pose": ((4, 4), (3, 4)), "intrinsics": ((3, 3),)}  # shapes of settings that may have rows
 BOOLS = ("bool", "bool_")  # names in Python and NumPy 2, and in NumPy 1
 
 
@@ -68,11 +71,17 @@ def number_of(value, name, whole=False):
 
 def _text(row, value):
     """Returns one value in the syntax of settings: True as "true", (1, 2, 3) as "1,2,3", a size as "640x480", a part as "1/4"."""
+    if isinstance(value, list) and len(value) == 1 and isinstance(value[0], str):
+        value = value[0] # a value of texts_of()
     if isinstance(value, str):
         return _encodable(value, row["name"])
     if isinstance(value, os.PathLike):
         return file_name(value, row["name"])
-    if isinstance(value, bool) or type(value).__name__ in BOOLS:
+    if hasattr(value, "__dlpack__"):
+        value = on_host(value)
+    if isinstance(value, (bytes, bytearray, complex)) or getattr(getattr(value, "dtype", None), "kind", "") == "c":
+        pass # bytes are numbers for iter(), and NumPy's complex ones have a float()
+    elif isinstance(value, bool) or type(value).__name__ in BOOLS:
         if row["type"] == "bool":
             return "true" if value else "false"
     elif hasattr(value, "__float__") and getattr(value, "ndim", 0) == 0:
@@ -85,9 +94,21 @@ def _text(row, value):
         except ValueError:  # it has more digits than Python writes
             raise input_error(row["name"], TOO_LARGE) from None
         return str(int(number)) if number.is_integer() and abs(number) < 2**53 else repr(number)
-    elif hasattr(value, "__iter__"):
+    elif hasattr(value, "__getitem__") and not isinstance(value, Mapping) and row["type"] not in ("bool", "int", "float"):
+        _check_shape(row["name"], value)
         return ("x" if row["type"] == "size" else SEPARATORS.get(row["form"], ",")).join(_text(row, item) for item in value)
     raise TypeError(f"{row['name']}: {type(value).__name__} is not a value of this setting ({row['form'] or 'bool'})")
+
+
+def _check_shape(name, value):
+    """Raises InputError for rows of numbers, unless the setting may have them."""
+    shape = getattr(value, "shape", None)
+    if shape is None:
+        lengths = [len(item) for item in value if hasattr(item, "__len__") and not isinstance(item, str)]
+        shape = (len(value), *lengths[:1]) if len(set(lengths)) < 2 else (len(value), "?")
+    if len(shape) > 1 and shape not in MATRICES.get(name, ()):
+        expected = " or ".join(map(str, MATRICES.get(name, ()))) or "one row of numbers"
+        raise input_error(name, f"the shape is {tuple(shape)}; expected {expected}", str(tuple(shape)))
 
 
 def _texts(row, value):

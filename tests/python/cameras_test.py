@@ -74,6 +74,7 @@ class Cameras(unittest.TestCase):
             batch = pertev.render(self.scene, cameras=cameras, seeds=[4, 5, 6], **of_all)
             chunks = list(pertev.render_chunks(self.scene, cameras, chunk=2, seeds=[4, 5, 6], **of_all))
             self.assertEqual(type(there.color), numpy.ndarray if DEVICE == "cpu" else pertev.DeviceArray)
+            self.assertEqual(["denoiser" in info for info in (here.info, there.info, batch.info[1])], 3 * [more["denoise"] == "oidn"])
             for name in ["color", *layers]:
                 self.assertEqual(host(getattr(there, name)).tobytes(), getattr(here, name).tobytes(), (name, more))
                 for k, picture in enumerate(alone):

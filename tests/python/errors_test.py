@@ -136,6 +136,28 @@ class Errors(unittest.TestCase):
             with self.assertRaises(KeyError):
                 self.scene.params[wrong] = 1
 
+    def test_numbers_of_another_kind_or_shape_are_refused(self):
+        render = lambda **values: pertev.render(self.scene, **{"size": (6, 4), "spp": 1, **values})
+        for name, wrong in [("spp", b"1"), ("spp", numpy.array([1])), ("spp", (1,)), ("seed", bytearray(b"1")), ("eye", {1, 2, 3}), ("eye", {1: 2}),
+                            ("eye", (1j, 0, 3)), ("eye", numpy.array([1j, 0, 3])), ("clamp", numpy.complex64(1))]:
+            with self.subTest(name, wrong=wrong), self.assertRaisesRegex(TypeError, f"^{name}: "):
+                render(**{name: wrong})
+        for name, wrong in [("eye", numpy.ones((3, 1))), ("camera_pose", numpy.ones((2, 8))), ("camera_pose", [[1, 0], [0]]),
+                            ("intrinsics", numpy.ones((9, 1))), ("environment", [[1, 1, 1]])]:
+            with self.subTest(name, wrong=wrong):
+                self.refused(pertev.InputError, name, lambda: render(**{name: wrong}))
+        self.refused(pertev.InputError, "reference", lambda: pertev.compare(numpy.zeros((4, 4, 3)), numpy.zeros((5, 4, 3))))
+
+        class OnDevice:  # What an array of Warp has.
+            def __init__(self, values):
+                self.numpy = lambda: numpy.array(values)
+
+            __dlpack__ = None
+
+        same = [render(eye=eye, intrinsics=K, spp=spp).hash for eye, K, spp in [
+            ((0, 1, 3), (8, 8, 3, 2), 2), (OnDevice([0, 1, 3]), OnDevice([[8, 0, 3], [0, 8, 2], [0, 0, 1]]), OnDevice(2))]]
+        self.assertEqual(*same)
+
     def test_cameras_are_chosen_by_number(self):
         cameras = pertev.Cameras(numpy.arange(3 * 16).reshape(3, 4, 4), [[8, 8, 4, k] for k in range(3)], convention="opencv")
         self.assertEqual([(len(one), one.poses[0, 0, 0], one.K[0, 3], one.settings["convention"]) for one in cameras],

@@ -71,6 +71,14 @@ class Render(unittest.TestCase):
             self.assertIn(picture.hash, json.dumps(info))
             self.assertEqual(names[1].read_bytes()[:4], b"\x89PNG")
 
+    def test_info_has_all_metadata_of_an_exr(self):
+        with tempfile.TemporaryDirectory() as folder:
+            picture = pertev.render("cornell-box", size=(8, 8), spp=1, denoise="svgf", layers=["crypto_object"], output=f"{folder}/a.exr")
+            info = json.loads(subprocess.run([PROGRAM, "info", f"{folder}/a.exr", "--json"], check=True, capture_output=True, text=True).stdout)
+        names = {name.removeprefix("pertev.") for name in info if name.startswith(("pertev.", "cryptomatte/"))}
+        self.assertEqual(set(picture.info), names)
+        self.assertIn("tall block", next(str(value) for name, value in picture.info.items() if name.endswith("/manifest")))
+
     def test_layers_may_be_requested_with_a_file_that_has_none(self):
         with tempfile.TemporaryDirectory() as folder:
             picture = pertev.render("cornell-box", size=(8, 8), spp=1, layers="depth", output=f"{folder}/a.png")

@@ -67,6 +67,11 @@ fs::path prefix_of_python() {
     return {};
 }
 
+fs::path& prefix_of_interpreter() {
+    static fs::path prefix;
+    return prefix;
+}
+
 /// Returns the files to try, in order. A name without a folder is for the system's loader.
 std::vector<std::string> files_to_try(const std::string& given) {
     if (!given.empty()) {
@@ -83,8 +88,8 @@ std::vector<std::string> files_to_try(const std::string& given) {
         add_packages(folder, files);
     }
     for (const fs::path& prefix :
-         {fs::path(environment("VIRTUAL_ENV")), prefix_of_python(), fs::path(environment("HOME")) / ".local",
-          fs::path("/usr/local"), fs::path("/usr")}) {
+         {prefix_of_interpreter(), fs::path(environment("VIRTUAL_ENV")), prefix_of_python(),
+          fs::path(environment("HOME")) / ".local", fs::path("/usr/local"), fs::path("/usr")}) {
         if (prefix.is_absolute()) add_packages(prefix, files);
     }
     return files;
@@ -134,6 +139,8 @@ std::string OidnLibrary::load(const std::string& file) {
     ::dlclose(library);
     return why;
 }
+
+void OidnLibrary::look_below(const std::string& prefix) { prefix_of_interpreter() = prefix; }
 
 std::string OidnLibrary::version() const {
     return fmt::format("{}.{}.{}", version_ / 10000, version_ / 100 % 100, version_ % 100);

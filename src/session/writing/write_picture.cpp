@@ -1,6 +1,7 @@
 #include "session/writing/write_picture.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "base/error.h"
@@ -87,16 +88,14 @@ ExrMetadata matte_entries(const PictureFacts& facts, std::span<const FilmLayer> 
     return metadata;
 }
 
-/// Returns all metadata of a file. `mattes` are matte_entries() of the result's layers.
-ExrMetadata metadata_of(const PictureFacts& facts, const RenderResult& result, const ExrMetadata& mattes,
-                        const std::string& hash) {
+} // namespace
+
+ExrMetadata file_metadata(const PictureFacts& facts, const RenderResult& result, const std::string& hash) {
     ExrMetadata metadata = picture_metadata(facts, result, hash);
-    metadata.insert(metadata.end(), mattes.begin(), mattes.end());
+    std::ranges::move(matte_entries(facts, result.layers), std::back_inserter(metadata));
     if (!result.denoiser.empty()) metadata.emplace_back("pertev.denoiser", result.denoiser);
     return metadata;
 }
-
-} // namespace
 
 std::string failures_of(const WrittenPicture& written) {
     std::string text;
@@ -125,9 +124,8 @@ std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& r
     }
     PERTEV_CHECK(format == ImageFormat::Exr);
     const PictureFacts facts = facts_of(record, result.ids);
-    const ExrMetadata mattes = matte_entries(facts, result.layers);
-    return encode_exr(beauty_of(result), take_layers(result),
-                      metadata_of(facts, result, mattes, picture_hash(result.picture).hex()), facts.place);
+    const ExrMetadata metadata = file_metadata(facts, result, picture_hash(result.picture).hex());
+    return encode_exr(beauty_of(result), take_layers(result), metadata, facts.place);
 }
 
 WrittenPicture write_picture(std::span<const std::string> paths, const PictureRecord& record, RenderResult& result) {
@@ -136,16 +134,17 @@ WrittenPicture write_picture(std::span<const std::string> paths, const PictureRe
 
 WrittenPicture write_picture(std::span<const std::string> paths, const PictureFacts& facts, RenderResult& result) {
     const Display display = facts.display.value_or(Display{});
-    const ExrMetadata mattes = matte_entries(facts, result.layers);
+    const std::string hash = picture_hash(result.picture).hex();
+    const ExrMetadata metadata = file_metadata(facts, result, hash);
     const std::vector<ExrLayer> layers = take_layers(result);
-    WrittenPicture written = {.hash = picture_hash(result.picture).hex(),
+    WrittenPicture written = {.hash = hash,
                               .layers_hash = hash_of_layers(layers),
                               .denoised_hash = result.denoised ? picture_hash(*result.denoised).hex() : "",
                               .files = {}};
     const WriteImageOptions options = {.display = display.transform(),
                                        .transparent = facts.transparent,
                                        .layers = layers,
-                                       .metadata = metadata_of(facts, result, mattes, written.hash),
+                                       .metadata = metadata,
                                        .place = facts.place,
                                        .numbers = facts.numbers};
     for (const std::string& path : paths) {

@@ -29,6 +29,9 @@ std::string failures_of(const WrittenPicture& written);
 /// refuse_invalid_samples().
 void refuse_faults(const WrittenPicture& written, uint64_t invalid_samples, bool strict);
 
+/// Returns all metadata of an EXR of a result, whose picture has this hash.
+ExrMetadata file_metadata(const PictureFacts& facts, const RenderResult& result, const std::string& hash);
+
 /// If a result has been denoised, files show that; EXR keeps the film's picture as the layer `noisy`.
 
 /// Encodes a PNG or EXR file. Takes the layers out of `result`.
