@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Fails where packaging/ or .github/workflows could not be read by what they are for: an image's recipe has only known instructions, copies
 from stages and folders that there are, and is accepted by hadolint; a workflow is YAML, runs files that there are, and is accepted by
-actionlint; systemd accepts the unit. It says which of these tools are missing, also in build/test-tools, where .ci/run puts them, and then ends
+check-jsonschema, which has GitHub's schema; systemd accepts the unit. It says which of these tools are missing, also in build/test-tools, where .ci/run puts them, and then ends
 with 77; it runs nothing of the files.
 
     tools/check_packaging.py
@@ -17,6 +17,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+LINTERS = {"hadolint": [], "check-jsonschema": ["--builtin-schema", "vendor.github-workflows"]}  # with their options
 INSTRUCTIONS = {"FROM", "ARG", "WORKDIR", "COPY", "RUN", "ENV", "USER", "ENTRYPOINT"}
 
 
@@ -70,12 +71,12 @@ def faults_by_linter(name, file):
     program = linter(name)
     if program is None:
         return []
-    done = subprocess.run([program, file], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    done = subprocess.run([program, *LINTERS[name], file], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
     return done.stdout.splitlines() if done.returncode else []
 
 
 def missing_tools():
-    missing = [name for name in ("hadolint", "actionlint") if linter(name) is None]
+    missing = [name for name in LINTERS if linter(name) is None]
     missing += [] if shutil.which("systemd-analyze") else ["systemd-analyze"]
     return missing + ([] if importlib.util.find_spec("yaml") else ["PyYAML"])
 
@@ -88,7 +89,7 @@ def self_test():
     workflow = (ROOT / ".github/workflows/check.yml").read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory() as folder:
         for name, file, bad in [("hadolint", "Dockerfile", good.replace("WORKDIR /work", "WORKDIR work")),
-                                ("actionlint", "check.yml", workflow.replace("steps:", "stages:"))]:
+                                ("check-jsonschema", "check.yml", workflow.replace("steps:", "stages:"))]:
             path = pathlib.Path(folder, file)
             path.write_text(bad, encoding="utf-8")
             assert linter(name) is None or faults_by_linter(name, path), bad
@@ -109,7 +110,7 @@ def main(arguments):
     missing = missing_tools()
     tools = {faults_of_workflow: "PyYAML", faults_of_unit: "systemd-analyze"}
     faults = []
-    for pattern, look, by in [("packaging/Dockerfile", faults_of_recipe, "hadolint"), (".github/workflows/*.yml", faults_of_workflow, "actionlint"),
+    for pattern, look, by in [("packaging/Dockerfile", faults_of_recipe, "hadolint"), (".github/workflows/*.yml", faults_of_workflow, "check-jsonschema"),
                                   ("packaging/*.service", faults_of_unit, None)]:
         for file in sorted(ROOT.glob(pattern)):
             if tools.get(look) not in missing:
