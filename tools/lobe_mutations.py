@@ -75,4 +75,8 @@ MUTATIONS = [
     ("a path in the wavefront that forgets which surface it left", "statistical/solid_absorption",
      ("src/integrators/path/path_stages.h", "if ((kFeatures & kStacked) != 0 && !begins)", "if (false)")),
     ("a dimmed metal is as bright as others", "statistical/mitsuba_lobes", ("src/shading/lobes/packed_lobes.h", "1.0f - microfacets.more()", "1.0f - 0 * microfacets.more()")),
+    ("light trapped between mirrors never ends by chance", "statistical/glowing_room unit/subpaths", ("src/shading/survival.h", "scatterings > 64 ?", "false ?")),
+    ("little loss in many scatterings ends paths", "unit/subpaths", ("src/integrators/subpaths/subpath_vertex.h", "if (sample.is_delta()) chance", "chance")),
+    ("hits are sorted by the groups of other materials", "unit/order_hits", ("src/integrators/path/order_hits.h", "[scene.instances[instance].material]", "[instance]")),
+    ("hits are sorted into the places of other groups", "unit/order_hits", ("src/integrators/path/order_hits.h", "k < group;", "k <= group;")),
 ]

@@ -7,7 +7,7 @@ import lobe_mutations
 import part_mutations
 
 MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + lobe_mutations.MUTATIONS + frame_mutations.MUTATIONS + [
-    ("shadow rays without a time", "consistency/shutter", ("src/integrators/path/path_loop.inl", "paths_[shadow_paths_[i]].time}", "kAtRest}")),
+    ("shadow rays without a time", "consistency/shutter", ("src/integrators/path/path_loop.inl", "shadow_keys_[i], path.time}", "shadow_keys_[i], kAtRest}")),
     ("weights without the ways that end earlier", "statistical/bidirectional",
      ("src/integrators/subpaths/subpath_memory.h", "last + earlier * squared_density(reverse_pdf)", "last + 0.0f * earlier * squared_density(reverse_pdf)")),
     ("half of a shadow ray's diffuse light counted as glossy", "statistical/light_paths",

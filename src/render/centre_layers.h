@@ -56,7 +56,7 @@ struct StoreCentres {
         const Hit hit = hits.load(i);
         const Ray ray = load_ray(rays + i);
         const auto slot = static_cast<uint64_t>(window.slot_of(bits_of(ray.t_min)));
-        const SceneView& scene = picture.scene;
+        const SceneView& scene = picture.scene_of(bits_of(ray.t_min));
         if (shows_background(scene, hit.instance)) return store_none(slot);
         const float time = ray.t_max;
         const MovedHit moved(scene, hit, kMoves ? time : kAtRest);

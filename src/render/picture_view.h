@@ -14,6 +14,9 @@ struct PictureView {
     bool hide_background = false; // camera rays that hit nothing return black, for pictures with alpha
     BatchView batch = {};         // if it is there, `camera` has the size of the tall picture and no place
 
+    /// Returns the scene that a pixel's picture shows. Pictures of a batch have one scene; worlds that differ are to be
+    /// chosen here, by the number of the picture (BatchView::pixel_of).
+    HD const SceneView& scene_of(uint32_t) const { return scene; }
     /// Returns whether a camera ray from `origin` that hits nothing is black.
     HD bool hides_background(Vec3 origin) const { return hide_background || is_outside_lens(origin); }
     /// The camera's axis for a pixel at a ray's time.

@@ -42,12 +42,13 @@ PictureView BatchRender::view_of_chunk(uint32_t count) {
     Camera at_rest = batch_.cameras[done_];
     at_rest.motion.clear();
     PictureView picture = pictures_.view_of(at_rest, settings_);
-    const Vec3 centre = picture.scene.centre;
     std::vector<CameraRays> cameras;
     std::vector<uint32_t> seeds;
     std::vector<MotionKey> motions;
     for (uint32_t k = done_; k < done_ + count; ++k) {
         const Camera& camera = batch_.cameras[k];
+        const SceneView& scene = picture.scene_of((k - done_) * settings_.width * settings_.height);
+        const Vec3 centre = scene.centre;
         CameraRays rays = make_camera_rays(camera, picture.camera.filter, settings_.width, settings_.height, centre);
         rays.interior = pictures_.scene().interior_of(camera);
         if (!camera.motion.empty()) {
@@ -58,7 +59,7 @@ PictureView BatchRender::view_of_chunk(uint32_t count) {
                 motions.push_back(key);
             }
         }
-        rays.is_open = rays.motion.moves() || picture.scene.motions.is_there();
+        rays.is_open = rays.motion.moves() || scene.motions.is_there();
         picture.camera.is_open = picture.camera.is_open || rays.is_open;
         cameras.push_back(rays);
         seeds.push_back(batch_.seed_of(k, settings_));

@@ -165,3 +165,27 @@ TEST_CASE("weights of all techniques of a light path add up to 1, however next-e
         if (ratio == 1) CHECK(by_hit == doctest::Approx(mis_weight(hit.weight_sum(camera))).epsilon(1e-5));
     }
 }
+
+TEST_CASE("light that perfect interfaces scatter ends by chance after 64 vertices, and its weight makes up for that") {
+    constexpr uint32_t kSamples = 20'000;
+    const SubpathSettings settings;
+    const auto survivors = [&](LobeClass lobe_class, uint32_t vertex, double& weight) {
+        uint32_t count = 0;
+        for (uint32_t i = 0; i < kSamples; ++i) {
+            BsdfSample sample = {.weight = grey(1), .pdf = 1, .lobe_class = lobe_class};
+            if (!survives(settings, {i, 0, 0}, 3, vertex, sample)) continue;
+            ++count;
+            weight += static_cast<double>(sample.weight.g) / kSamples;
+        }
+        return count;
+    };
+    double of_short = 0, of_long = 0, of_rough = 0;
+    CHECK(survivors(LobeClass::Specular, 64, of_short) == kSamples);
+    CHECK(survivors(LobeClass::Diffuse, 1000, of_rough) == kSamples); // little loss in many scatterings is no trap
+    const double share = survivors(LobeClass::Specular, 65, of_long) / double(kSamples);
+    CHECK(share > 0.975);
+    CHECK(share < 0.985);
+    CHECK(of_short == doctest::Approx(1));
+    CHECK(of_rough == doctest::Approx(1));
+    CHECK(of_long == doctest::Approx(1).epsilon(0.005));
+}

@@ -66,6 +66,13 @@ inline Features features_of(ShadingVariant variant) {
     return kAllMaterials;
 }
 
+/// Returns the scene that the picture of a pixel shows.
+template <Features kFeatures>
+HD inline const SceneView& scene_of(const PathJob& job, uint32_t pixel) {
+    if constexpr ((kFeatures & kBatched) != 0) return job.picture.scene_of(pixel);
+    return job.picture.scene;
+}
+
 /// Returns the key of the random numbers of a path.
 template <Features kFeatures>
 HD inline SampleKey sample_key(const PathJob& job, uint32_t pixel, uint32_t sample) {

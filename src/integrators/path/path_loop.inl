@@ -28,13 +28,13 @@ protected:
         };
         const auto accept_of = [&](uint32_t i) {
             const PathState& path = paths_[begin + i];
-            return AcceptHit{job_.picture.scene, path.start, {}, key_of(path, false), path.time};
+            return AcceptHit{scene_of(path), path.start, {}, key_of(path, false), path.time};
         };
         if (begin == end) return;
         const bool from_camera = paths_[begin].depth == 0;
         if (from_camera && raster_ != nullptr) {
             for (uint32_t i = begin; i < end; ++i) {
-                hits_[i] = find_in_tile(*raster_, job_.picture.scene, ray_of(i - begin), paths_[i].pixel,
+                hits_[i] = find_in_tile(*raster_, scene_of(paths_[i]), ray_of(i - begin), paths_[i].pixel,
                                         key_of(paths_[i], false));
             }
             return;
@@ -49,17 +49,18 @@ protected:
             return Ray{ray.origin, 0.0f, ray.direction, ray.t_max};
         };
         const auto accept_of = [&](uint32_t i) {
-            return AcceptHit{job_.picture.scene, shadow_rays_[i].start, shadow_rays_[i].target, shadow_keys_[i],
-                             paths_[shadow_paths_[i]].time};
+            const PathState& path = paths_[shadow_paths_[i]];
+            return AcceptHit{scene_of(path), shadow_rays_[i].start, shadow_rays_[i].target, shadow_keys_[i], path.time};
         };
         find_occlusions<Floats>(trees_, shadows_, RayOrder::Together, ray_of, accept_of, occluded_);
     }
 
     /// Key of the path's ray at its depth, for blended surfaces only.
     uint32_t key_of(const PathState& path, bool is_shadow) const {
-        return job_.picture.scene.any_alpha != 0 ? coin_key(sample_of(path), path.depth, is_shadow) : 0;
+        return scene_of(path).any_alpha != 0 ? coin_key(sample_of(path), path.depth, is_shadow) : 0;
     }
 
+    const SceneView& scene_of(const PathState& path) const { return job_.picture.scene_of(path.pixel); }
     SampleKey sample_of(const PathState& path) const { return sample_key<kBatched>(job_, path.pixel, path.sample); }
 
     /// Random numbers of at most eight paths at their present vertices.
@@ -80,12 +81,12 @@ protected:
     void prefetch_indices(const uint32_t* which, uint32_t k, uint32_t count) const {
         if (k >= count) return;
         const Hit& hit = hits_[which[k]];
-        __builtin_prefetch(mesh_of(hit).indices + 3 * uint64_t(hit.primitive));
+        __builtin_prefetch(mesh_of_hit(which[k]).indices + 3 * uint64_t(hit.primitive));
     }
     void prefetch_vertices(const uint32_t* which, uint32_t k, uint32_t count) const {
         if (k >= count) return;
         const Hit& hit = hits_[which[k]];
-        const MeshView& mesh = mesh_of(hit);
+        const MeshView& mesh = mesh_of_hit(which[k]);
         const TriangleIndices at = triangle_indices(mesh, hit.primitive);
         for (const uint32_t vertex : {at.a, at.b, at.c}) {
             __builtin_prefetch(mesh.positions + vertex);
@@ -104,8 +105,9 @@ protected:
     bool occluded_[kPaths];
 
 private:
-    const MeshView& mesh_of(const Hit& hit) const {
-        return job_.picture.scene.meshes[job_.picture.scene.instances[hit.instance].mesh];
+    const MeshView& mesh_of_hit(uint32_t i) const {
+        const SceneView& scene = scene_of(paths_[i]);
+        return scene.meshes[scene.instances[hits_[i].instance].mesh];
     }
 
     const HostTrees& trees_;

@@ -138,7 +138,7 @@ struct Shade {
         if (!goes_on && !has_shadow_ray) return listener.ended(path.pixel, path.radiance, kept);
         if (goes_on) {
             next.store(slots.path, path, sample_key<kFeatures>(job, path.pixel, path.sample),
-                       job.picture.scene.any_alpha != 0);
+                       scene_of<kFeatures>(job, path.pixel).any_alpha != 0);
             if (kMoves && next.times != nullptr) next.times[slots.path] = path.time;
             if constexpr (LightChoice<kFeatures>::kReadsNormal) next.normals[slots.path] = path.normal;
             if ((kFeatures & kNested) != 0 && next.interiors != nullptr) {

@@ -66,7 +66,7 @@ HD inline void add_emitted(PathState& path, Rgb light, Listener& listener) {
 /// Adds the light of the environment for a ray that hit nothing.
 template <Features kFeatures, class Listener>
 HD INLINE_ON_DEVICE void add_background(const PathJob& job, PathState& path, Listener& listener) {
-    const LightSetView& lights = job.picture.scene.lights;
+    const LightSetView& lights = scene_of<kFeatures>(job, path.pixel).lights;
     Rgb light = {0, 0, 0};
     if (lights.has_environment() && !(path.depth == 0 && job.picture.hides_background(path.origin))) {
         const EnvironmentHit seen =
@@ -85,9 +85,10 @@ HD INLINE_ON_DEVICE void add_surface_emission(const PathJob& job, PathState& pat
     Rgb light = {0, 0, 0};
     if (!is_black(surface.emission)) {
         constexpr bool kMoves = (kFeatures & kMoving) != 0;
-        const float light_pdf = path.bsdf_pdf > 0 ? pdf_direct<LightChoice<kFeatures>>(job.picture.scene, kMoves,
-                                                                                       context_before(path), surface)
-                                                  : 0.0f;
+        const float light_pdf = path.bsdf_pdf > 0
+                                    ? pdf_direct<LightChoice<kFeatures>>(scene_of<kFeatures>(job, path.pixel), kMoves,
+                                                                         context_before(path), surface)
+                                    : 0.0f;
         if (!listener.removes_emission(path, {hit.instance, hit.primitive, hit.u, hit.v}, light_pdf)) {
             light = emitted_light(job.settings, path, surface.emission, light_pdf);
         }
@@ -126,7 +127,7 @@ template <Features kFeatures, class Vertex, class Numbers, class Listener>
 HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path, const Vertex& vertex,
                                        const LightContext& context, const Numbers& numbers, ShadowRay& shadow,
                                        Listener& listener) {
-    const SceneView& scene = job.picture.scene;
+    const SceneView& scene = scene_of<kFeatures>(job, path.pixel);
     const PathSettings& settings = job.settings;
     if (settings.strategy == LightStrategy::BsdfOnly || vertex.scatters_by_delta_alone()) return false;
     if (!counts(settings.light, path.rough_depth + 1)) return false;
@@ -273,7 +274,7 @@ HD_CALL inline bool reach_nested_solid(const SceneView& scene, PathState& path, 
 template <Features kFeatures, class Numbers, class Listener>
 HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const Hit& hit, const Numbers& numbers,
                                       ShadowRay& shadow, bool& has_shadow_ray, Listener& listener) {
-    const SceneView& scene = job.picture.scene;
+    const SceneView& scene = scene_of<kFeatures>(job, path.pixel);
     has_shadow_ray = false;
     constexpr bool kIsVacuum = Medium<kFeatures>::kIsVacuum;
     [[maybe_unused]] typename Medium<kFeatures>::Vertex in_medium;

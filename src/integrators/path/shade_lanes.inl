@@ -234,16 +234,21 @@ struct Paths {
     Mask is_clamped; // scattered at least once before this vertex
 };
 
+/// Returns the scene of all lanes, whose paths are of one.
+const SceneView& scene_of(const PathJob& job, const LaneVertices& vertices) {
+    return job.picture.scene_of(vertices.paths[0]->pixel);
+}
+
 /// Samples direct light as sample_direct. Returns the lanes that need a shadow ray.
 unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, const Surfaces& surfaces, Vec3s wo,
                        Vec3s wo_local, const LaneVertices& vertices, const SampleBitsOf<Words>& u, ShadowRay* shadows) {
+    const LightSetView& all = scene_of(job, vertices).lights;
     Lights lights;
     if (features_of_lanes(job) == kPlainDiffuse) {
-        sample_lights<kPlainDiffuse>(job.picture.scene.lights, lanes, surfaces.position, {}, u, lights);
+        sample_lights<kPlainDiffuse>(all, lanes, surfaces.position, {}, u, lights);
     } else {
         const Vec3s normal = surfaces.context_normal(wo);
-        sample_lights<kPlainDiffuse | kLightTree>(job.picture.scene.lights, lanes, surfaces.position, normal, u,
-                                                  lights);
+        sample_lights<kPlainDiffuse | kLightTree>(all, lanes, surfaces.position, normal, u, lights);
     }
     const Values scattered = evaluate(surfaces, wo, wo_local, lights.wi);
     const Mask wants = lights.arrives && scattered.pdf > 0 && !is_black(scattered.f);
@@ -340,7 +345,7 @@ unsigned sample_scattering(const PathJob& job, unsigned lanes, const Paths& path
 
 /// Adds what the surfaces of `lanes` emit.
 void add_emission(const PathJob& job, unsigned lanes, const LaneVertices& vertices, const Surfaces& surfaces) {
-    const SceneView& scene = job.picture.scene;
+    const SceneView& scene = scene_of(job, vertices);
     for (; lanes != 0; lanes &= lanes - 1) {
         const auto lane = static_cast<uint32_t>(__builtin_ctz(lanes));
         const Hit& hit = *vertices.hits[lane];
@@ -377,7 +382,7 @@ Paths load_paths(const LaneVertices& vertices) {
 }
 
 [[gnu::flatten]] LaneResults shade_lanes(const PathJob& job, const LaneVertices& vertices, ShadowRay* shadows) {
-    const SceneView& scene = job.picture.scene;
+    const SceneView& scene = scene_of(job, vertices);
     const unsigned all = (1u << vertices.count) - 1;
     const Paths paths = load_paths(vertices);
     const VertexWords<Words> words = draw_numbers(job, vertices);
