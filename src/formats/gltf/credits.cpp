@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <ranges>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -66,11 +67,7 @@ constexpr std::string_view kBetweenCredits = "; ";
 /// Splits a text of several files' credits into single credits.
 std::vector<std::string> separate(std::string_view credits) {
     std::vector<std::string> parts;
-    for (std::size_t begin = 0; begin <= credits.size();) {
-        const std::size_t end = std::min(credits.find(kBetweenCredits, begin), credits.size());
-        parts.emplace_back(credits.substr(begin, end - begin));
-        begin = end + kBetweenCredits.size();
-    }
+    for (const auto part : std::views::split(credits, kBetweenCredits)) parts.emplace_back(part.begin(), part.end());
     return parts;
 }
 
