@@ -9,9 +9,10 @@ import json
 import math
 import time
 
-import bpy
 from contest import CornellBox, main
-from mathutils import Matrix, Vector
+from late_import import LateImport
+
+bpy, mathutils = LateImport("bpy"), LateImport("mathutils")  # bpy brings mathutils
 
 
 class Scene:
@@ -83,10 +84,10 @@ class Scene:
 
 
 def look_at(eye, target):
-    forward = (Vector(target) - Vector(eye)).normalized()
-    right = forward.cross(Vector((0, 1, 0))).normalized()
+    forward = (mathutils.Vector(target) - mathutils.Vector(eye)).normalized()
+    right = forward.cross(mathutils.Vector((0, 1, 0))).normalized()
     up = right.cross(forward)
-    return Matrix([[right[i], up[i], -forward[i], eye[i]] for i in range(3)] + [[0, 0, 0, 1]])
+    return mathutils.Matrix([[right[i], up[i], -forward[i], eye[i]] for i in range(3)] + [[0, 0, 0, 1]])
 
 
 def read_obj(scene, job):
@@ -95,7 +96,7 @@ def read_obj(scene, job):
             for name, (reflectance, emission) in job.materials.items()}
     for thing in bpy.data.objects:
         if thing.type == "MESH":
-            thing.matrix_world = Matrix()  # the file's own axes
+            thing.matrix_world = mathutils.Matrix()  # the file's own axes
             thing.data.shade_flat()
             for slot in thing.material_slots:
                 slot.material = made[slot.material.name.partition(".")[0]]

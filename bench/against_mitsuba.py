@@ -16,8 +16,10 @@ import pathlib
 import time
 import xml.etree.ElementTree as ElementTree
 
-import mitsuba as mi
 from contest import SceneFile, main
+from late_import import LateImport
+
+mi = LateImport("mitsuba")
 
 
 def diffuse(reflectance):

@@ -17,13 +17,13 @@ import subprocess
 import tempfile
 import time
 
-import newton
-import numpy as np
-import warp as wp
 from contest import SPONZA, write_grey_obj
-from newton.sensors import SensorCamera
+from late_import import LateImport
+from measurement import write_measurement
 
+np, wp, newton, sensors = (LateImport(name) for name in ("numpy", "warp", "newton", "newton.sensors"))
 SIZE = 128
+TITLES = {"centres": "depth, normals and ids at pixel centres", "direct": "and one direct sample with its shadow"}
 
 
 def triangles_of(obj):
@@ -76,9 +76,9 @@ def measure_newton(obj, pictures, device, runs):
     mesh = newton.Mesh(vertices, indices, compute_inertia=False, color=(0.7, 0.7, 0.7))
     builder.add_shape_mesh(-1, mesh=mesh)
     model = builder.finalize(device=device)
-    state, sensor = model.state(), SensorCamera(model)
+    state, sensor = model.state(), sensors.SensorCamera(model)
     sensor.create_default_light(enable_shadows=True)
-    rays = SensorCamera.compute_camera_rays_pinhole(SIZE, SIZE, camera_fov=math.radians(SPONZA["fov_y_deg"]), device=device)
+    rays = sensors.SensorCamera.compute_camera_rays_pinhole(SIZE, SIZE, camera_fov=math.radians(SPONZA["fov_y_deg"]), device=device)
     size = float(np.linalg.norm(vertices.max(0) - vertices.min(0)))
     transforms = wp.array(transforms_of(pictures, size), dtype=wp.transformf, device=device)
     worlds = wp.zeros(pictures, dtype=wp.int32, device=device)
@@ -89,8 +89,8 @@ def measure_newton(obj, pictures, device, runs):
     }
     color = sensor.allocate_image_color(pictures, SIZE, SIZE)
     rates = {"centres": {}, "direct": {}}
-    for order in SensorCamera.RenderOrder:
-        config = SensorCamera.RenderConfig(enable_shadows=True, enable_backface_culling=False, max_distance=1e6, render_order=order)
+    for order in sensors.SensorCamera.RenderOrder:
+        config = sensors.SensorCamera.RenderConfig(enable_shadows=True, enable_backface_culling=False, max_distance=1e6, render_order=order)
         for job, images in (("centres", layers), ("direct", {"color_image": color, **layers})):
             rates[job][order.name.lower()] = rate_of(
                 lambda config=config, images=images: sensor.update(state, transforms, rays, world_indices=worlds, render_config=config, **images),
@@ -123,22 +123,16 @@ def main():
         write_grey_obj(pathlib.Path(os.environ["PERTEV_SCENES"]) / SPONZA["file"], obj, 0.7)
         theirs, seen = measure_newton(obj, pictures, device, args.runs)
         ours = measure_pertev(args.pertev.resolve(), obj, pictures, args.device, args.runs)
-    rows = []
-    for job, by_order in theirs.items():
-        best = max(by_order.values())
-        rows.append({"job": job, "pertev": ours[job], "newton": best, "ratio": ours[job] / best, "newton_by_order": by_order})
-    result = {
-        "device": wp.get_device(device).name,
-        "date": time.strftime("%Y-%m-%d"),
-        "newton": newton.__version__,
-        "warp": wp.__version__,
-        "pictures": pictures,
-        "share_of_pixels_that_newton_hits": seen,
-        "pictures_per_second": rows,
-    }
-    print(json.dumps(result, indent=1))
+    rows = [[TITLES[job], round(ours[job]), round(best), float(f"{ours[job] / best:.4g}"), order] for job, (best, order) in
+            ((job, max((rate, order) for order, rate in by_order.items())) for job, by_order in theirs.items())]
+    for row in rows:
+        print(*row, sep=", ")
     if args.output:
-        args.output.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+        columns = [("layers", "layers", None), ("pertev", "Pertev", "pictures/s"), ("newton", "Newton", "pictures/s"), ("ratio", "ratio", None),
+                   ("order", "Newton's render order", None)]
+        notes = [f"Newton {newton.__version__}, Warp {wp.__version__}; batches of {pictures} pictures of {SIZE}x{SIZE} of grey Sponza, medians of {args.runs} "
+                 f"runs. Newton's light comes from one direction, Pertev's from a constant sky; {100 * seen:.0f} % of Newton's pixels hit."]
+        write_measurement(args.output, args.pertev.resolve(), "Beside Newton's camera sensor", columns, rows, args.device, os.cpu_count(), notes, "batches")
 
 
 if __name__ == "__main__":

@@ -11,11 +11,11 @@ import pathlib
 import sys
 import time
 
-import numpy
-import pertev
-
 sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "tools"))
+from late_import import LateImport  # pylint: disable=wrong-import-position
 from measurement import write_measurement  # pylint: disable=wrong-import-position
+
+numpy, pertev = LateImport("numpy"), LateImport("pertev")
 
 SIZES = ((1, 1), (64, 64), (128, 128), (320, 240), (640, 480))
 

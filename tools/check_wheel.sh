@@ -1,9 +1,12 @@
 #!/usr/bin/env bash
 # Checks wheels as a stranger meets them, in bare systems of Debian 12 (Python 3.11) and Debian 13 (Python 3.13) that
-# have python3-venv and no more: tools/check_wheel.sh WHEELS PROGRAM [ROOTS]. The folder WHEELS is that of
-# tools/make_wheel.sh; PROGRAM is a build of the same sources, whose picture theirs must be. ROOTS (build/roots) keeps
-# the systems. Needs root, debootstrap and the network.
+# have python3-venv and no more: tools/check_wheel.sh [--report MEASUREMENT.json] WHEELS PROGRAM [ROOTS]. The folder WHEELS
+# is that of tools/make_wheel.sh; PROGRAM is a build of the same sources, whose picture theirs must be. ROOTS (build/roots)
+# keeps the systems. The report has sizes and times. Needs root, debootstrap and the network.
 set -euo pipefail
+command="tools/check_wheel.sh $*" report=
+[[ ${1:-} != --report ]] || { report=$(realpath -m "$2"); shift 2; }
+measurement=$(realpath "$(dirname "${BASH_SOURCE[0]}")/measurement.py")
 wheels=$(realpath "$1") program=$(realpath "$2") roots=$(realpath -m "${3:-build/roots}")
 picture=(cornell-box --size 64x48 --spp 4 --seed 3 --device cpu)
 work=$(mktemp -d)
@@ -45,6 +48,8 @@ in_root() { # ROOT COMMAND: with /proc, /dev, this machine's names and certifica
 }
 export wheels
 
+printf 'wheel=wheel\tsystem=system\tcommit=commit\tfile_mb=file=MB\tinstalled_mb=installed=MB\tnumpy_mb=with NumPy=MB\tinstall_s=installing=s\timport_ms=import=ms\n' >"$work/rows"
+megabytes() { du -sb --total "$@" | tail -1 | awk '{ printf "%.1f", $1 / 1e6 }'; }
 checked=0
 for suite in bookworm trixie; do
     root=$roots/$suite
@@ -55,14 +60,22 @@ for suite in bookworm trixie; do
     for wheel in "$wheels"/pertev-*"$tag"*.whl; do # with CUDA and without; by their names, because pip would take the former
         name=/mnt/$(basename "$wheel")
         rm -rf "$root/tmp/v"
-        start=$SECONDS
+        start=${EPOCHREALTIME/[^0-9]/}
         in_root "$root" "python3 -m venv /tmp/v && /tmp/v/bin/pip -q install '$name'"
-        printf '%s: %s, %s, installed in %d s, %s: ' "$suite" "$(basename "$wheel")" "$(du -h "$wheel" | cut -f1)" $((SECONDS - start)) \
-            "$(du -sh --total "$root"/tmp/v/lib/python3*/site-packages/pertev* | tail -1 | cut -f1)"
-        in_root "$root" "cd /tmp; v/bin/python check.py $hash"
+        seconds=$(awk "BEGIN { print (${EPOCHREALTIME/[^0-9]/} - $start) / 1e6 }")
+        packages=$(echo "$root"/tmp/v/lib/python3*/site-packages)
+        import=$(in_root "$root" "cd /tmp; v/bin/python check.py $hash")
+        [[ $wheel == *+cu* ]] && kind="with CUDA" || kind="for the CPU"
+        [[ $tag == cp311 ]] && kind="$kind, Python 3.11" || kind="$kind, Python 3.12 and later"
+        version=$(in_root "$root" "/tmp/v/bin/pertev --version" | sed -n '1s/.*(\(.*\))/\1/p')
+        printf '%s\t' "$kind" "Debian $(cut -d. -f1 "$root/etc/debian_version")" "$version" "$(megabytes "$wheel")" \
+            "$(megabytes "$packages"/pertev*)" "$(megabytes "$packages"/{pertev,numpy}*)" "$(printf %.0f "$seconds")" >>"$work/rows"
+        echo "${import//[^0-9]/}" >>"$work/rows"
+        tail -1 "$work/rows"
         [[ $(in_root "$root" "cd /tmp; v/bin/pertev render ${picture[*]} --json -o a.png" | hash_of) == "$hash" ]]
         in_root "$root" "cd /tmp; v/bin/pip -q install '${name}[oidn]' && v/bin/python denoised.py $hash"
         checked=$((checked + 1))
     done
 done
+[[ -z $report ]] || python3 "$measurement" "$report" "$program" "Wheels in bare systems" "$command" <"$work/rows"
 echo "$checked wheels of $wheels give the picture $hash"

@@ -8,6 +8,10 @@ from the lowest degree up, and the rest is fitted again after each rounding, so 
 import struct
 import sys
 
+if __name__ == "__main__" and sys.argv[1:] == ["--help"]:  # packages may be missing
+    print(__doc__)
+    sys.exit()
+
 import numpy
 from mpmath import mp, mpf, acos, asin, atan, cos, exp, log, pi, sin, sqrt, tan
 
@@ -110,7 +114,4 @@ def main():
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] == ["--help"]:
-        print(__doc__)
-        sys.exit()
     main()

@@ -13,7 +13,9 @@ import subprocess
 import sys
 import tempfile
 
-from PIL import Image, ImageDraw
+from late_import import LateImport
+
+Image, ImageDraw = LateImport("PIL.Image"), LateImport("PIL.ImageDraw")
 
 KINDS = {'.gltf', '.glb', '.obj', '.ply'}
 

@@ -13,6 +13,10 @@ A row of the table is a node: a, b / sine of the view, the magnitude, and the al
 import pathlib
 import sys
 
+if __name__ == "__main__" and sys.argv[1:] == ["--help"]:  # packages may be missing
+    print(__doc__)
+    sys.exit()
+
 import numpy as np
 from scipy.optimize import minimize
 
@@ -136,7 +140,4 @@ def tabulate(nodes):
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] == ["--help"]:
-        print(__doc__)
-        sys.exit()
     tabulate(fit_layer())

@@ -14,9 +14,10 @@ import pathlib
 import subprocess
 import sys
 
-from PIL import Image, ImageDraw
-
+from late_import import LateImport
 from make_first_views import models
+
+Image, ImageDraw = LateImport("PIL.Image"), LateImport("PIL.ImageDraw")
 
 DATA = pathlib.Path(__file__).resolve().parent.parent / 'docs/gallery.json'
 SETTINGS = '--size 320x240 --spp 64 --tone-map neutral'.split()

@@ -9,6 +9,10 @@ operation. Needs numpy.
 import pathlib
 import sys
 
+if __name__ == "__main__" and sys.argv[1:] == ["--help"]:  # packages may be missing
+    print(__doc__)
+    sys.exit()
+
 import numpy as np
 
 F = np.float32
@@ -206,7 +210,4 @@ def main(arguments):
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] == ["--help"]:
-        print(__doc__)
-        sys.exit()
     main(sys.argv[1:])

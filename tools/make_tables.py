@@ -16,6 +16,7 @@ for each that the table has. A null among these has its reason in `unknown`.
 
 import datetime
 import json
+import os
 import pathlib
 import re
 import statistics
@@ -91,6 +92,8 @@ def origin_faults(measured):
             yield f"{one} begins with neither the program nor a script"
         if re.search(r"\||\[|, (?:and|in|once) | (?:with|of each) ", one):
             yield f"{one} is no command that a shell takes; remarks go to `notes`"
+        if (script := ROOT / one.split(" ")[0]).is_file() and not os.access(script, os.X_OK):
+            yield f"{one}: the script is not executable"
         yield from check_documents.script_faults("command", one)
         for pattern in re.findall(r"--source-file='?([^\s']+)", one):
             if not any((ROOT / "tests").rglob(pattern)):
@@ -217,7 +220,7 @@ def self_test():
     assert faults_of("x", {**good, "tables": good["tables"] * 2})
     assert faults_of("x", {**good, "tables": [{**good["tables"][0], "columns": [{"key": "k", "title": "a, ms", "unit": None}], "rows": [[1]]}]})
     for key, bad in (("date", ["2026-11-26", "2026-11-26T16:12:08", "2026-13-01", ""]), ("program", ["pertev", "", 3]), ("driver", ["1"]),
-                     ("command", ["", "x", "pertev bench; ", "tools/none.py", "tools/check_sizes.py --none", "pertev_tests --source-file=none", "pertev bench --job S5|S8", "pertev bench, and later"])):
+                     ("command", ["", "x", "pertev bench; ", "tools/none.py", "tools/mutations.py", "tools/check_sizes.py --none", "pertev_tests --source-file=none", "pertev bench --job S5|S8", "pertev bench, and later"])):
         for value in [*bad, None] if key != "driver" else bad:
             assert faults_of("x", {**good, key: value}), (key, value)
             assert key == "driver" or value is not None or not faults_of("x", {**good, key: value, "unknown": {key: "Why."}})

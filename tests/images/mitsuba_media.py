@@ -16,10 +16,11 @@ import subprocess
 import sys
 import tempfile
 
-import numpy
-
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+from late_import import LateImport  # noqa: E402
 from measurement import write_measurement  # noqa: E402
+
+numpy = LateImport("numpy")
 
 TITLES = {"fog": "fog in a room", "cloud": "cloud", "milk": "milk in rough glass", "haze": "glass in haze"}
 

@@ -14,7 +14,10 @@ import subprocess
 import sys
 import tempfile
 
-import numpy
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+from late_import import LateImport  # noqa: E402
+
+numpy = LateImport("numpy")
 
 LAYERS = "albedo,normal,depth,position,ids,uv,crypto_object"
 HALVES = ("R", "G", "B", "A", "albedo")

@@ -1,16 +1,18 @@
 #!/usr/bin/env python3
-"""Scripts that measure the jobs of bench/jobs.json: they write measurements, and a difference between devices has status 1; and the
+"""Scripts that measure jobs and builds: they write measurements, and a difference between devices has status 1; and the
 search of device code for registers that are read too early."""
 
 import pathlib
 import subprocess
 import sys
+import unittest.mock
 
 from cli_run import PROGRAM, CliTest, main
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 import check_stalls  # noqa: E402  pylint: disable=wrong-import-position
+import measure_builds  # noqa: E402  pylint: disable=wrong-import-position
 import make_tables  # noqa: E402  pylint: disable=wrong-import-position
 
 
@@ -27,23 +29,53 @@ class Scripts(CliTest):
         return subprocess.run([sys.executable, ROOT / "tools" / name, PROGRAM, self.path("no-scenes"), *arguments], cwd=self.path("."),
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
 
+    def rows_of(self, name):
+        """Returns the rows of the last table of a file, which must be a measurement."""
+        measured = make_tables.load(pathlib.Path(self.path(name)).read_text(encoding="utf-8"))
+        measured["command"] = measured["command"].replace(PROGRAM, "build/bin/pertev")
+        faults = [fault for fault in make_tables.faults_of("x", measured) if "names no commit" not in fault]  # for a build without Git
+        self.assertEqual(faults, [])
+        return measured["tables"][-1]["rows"]
+
     def test_measuring_jobs_writes_measurements_and_a_page(self):
         small = ["--", "--size", "24x16", "--spp", "1", "--device", "cpu"]
         done = self.run_script("measure.py", "out", "transport/cornell-box, path", "noise/bunny", *small)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("bunny", done.stderr)
-        measured = make_tables.load(pathlib.Path(self.path("out/cornell-box,-path.json")).read_text(encoding="utf-8"))
-        faults = [fault for fault in make_tables.faults_of("x", measured) if "names no commit" not in fault]  # for a build without Git
-        self.assertEqual(faults, [])
-        self.assertEqual(len(measured["tables"][-1]["rows"]), 1)
+        self.assertEqual(len(self.rows_of("out/cornell-box,-path.json")), 1)
         self.assertTrue(pathlib.Path(self.path("out/page.html")).exists())
 
     def test_comparing_devices_that_differ_or_fail_ends_with_1(self):
-        same = self.run_script("compare_devices.py", "1", "--only", "cornell-box", "--devices", "cpu", "cpu")
+        same = self.run_script("compare_devices.py", "1", "--only", "cornell-box", "--devices", "cpu", "cpu", "--report", "same.json")
         self.assertEqual(same.returncode, 0, same.stdout + same.stderr)
+        picture, light = self.rows_of("same.json")
+        self.assertEqual((picture[:2], picture[-1], light[-1]), (["cornell-box", "1 spp"], "yes", "yes"))
+        self.assertRegex(picture[2], "^[0-9a-f]{32}$")
         self.assertEqual(same.stdout.count(" same\n"), 2)  # a picture, and light at a point
         bad = self.run_script("compare_devices.py", "1", "--only", "cornell-box", "--devices", "cpu", "nothing")
         self.assertEqual((bad.returncode, bad.stdout.count(" DIFFERENT\n")), (1, 2))
+
+    def test_tables_of_shell_scripts_become_measurements(self):
+        subprocess.run([ROOT / "tools/measurement.py", self.path("table.json"), PROGRAM, "A title", "tools/check_wheel.sh WHEELS PROGRAM"], check=True,
+                       input="what=what\tsize=size=MB\nwheel, 3.11\t79.9\n", text=True)
+        self.assertEqual(self.rows_of("table.json"), [["wheel, 3.11", 79.9]])
+
+    def test_a_build_is_measured_in_a_new_clone(self):
+        if not (ROOT / ".git").exists():
+            self.skipTest("a clone is needed")
+        wasted = "python3 -c 'import time\nwhile time.process_time() < 0.3: pass'"
+        with unittest.mock.patch.dict(measure_builds.STEPS, {"ci": ("made", "true", f"test -e setup.sh && mkdir -p build/bin && head -c 2000000 /dev/zero > build/x && {wasted}")}):
+            (row, program), = measure_builds.rows_of("HEAD", ["ci"], self.path("."))
+        self.assertEqual(row[:2], ["made", "HEAD"])
+        self.assertGreaterEqual(min(row[2:4]), 0.3)
+        self.assertAlmostEqual(row[4], 2, delta=0.02)
+        self.assertEqual(program.parts[-3:], ("build", "bin", "pertev"))
+
+    def test_scripts_beside_other_programs_show_their_help_without_these(self):
+        for script in ROOT.glob("bench/against_*.py"):
+            done = subprocess.run([sys.executable, "-S", script, "--help"], capture_output=True, text=True, check=False)
+            self.assertEqual((done.returncode, done.stderr), (0, ""), script)
+            self.assertIn("--output", done.stdout)
 
     def test_registers_that_are_read_too_early_are_found(self):
         def cycles(*instructions):
