@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Fails where a document, a comment or what a script says of itself names what is not there: a file, an anchor, a source file, a script,
 a flag or a preset. It also fails where all documents together have more than 40,000 words, the tour names more than forty files, a text
-speaks of internal targets, a picture has no licence in docs/notices.md, a key of metadata is in no table, a line of a block without a
-language is no command that a test runs and is not on NOT_RUN, or status.md has too few questions or figures.
+speaks of internal targets, a picture has no licence in docs/notices.md, a key of metadata is in no table, a command of a block is on no
+row of RUN_BY, or status.md has too few questions or figures.
 
     tools/check_documents.py
+    tools/check_documents.py --commands   prints the commands that tools/nightly runs in a new clone
     tools/check_documents.py --links      asks for the documents' external links instead
     tools/check_documents.py --self-test
 
@@ -27,12 +28,23 @@ COMMAND = re.compile(r"(?:build/bin/|bench/|tools/|tests/)[\w./-]+|pertev\b(?!\.
 TARGETS = re.compile(r"(?i)\b(?:was|were) asked for|\basked for were|\bhoped for\b|\bwere planned\b|\b(?:aim|goal|target) (?:of [\d,.]+|is missed|was missed)|"
                      r"\b(?:limit is|at most) \w+ files outside|\bmet it at\b|(?<![`|\w])S[58](?![`|\w])")
 LEAST_QUESTIONS, LEAST_FIGURES = 30, 10 # rows of status.md
-# Begins of commands that no test runs, and why.
-NOT_RUN = {
-    "ffmpeg ": "it is another project's program, and its input is a render of some minutes",
-    "venv/bin/pip install .": "it builds for minutes; tools/check_wheel.sh installs what it makes",
-    "venv/bin/python -c ": "tests/python/documents_test.py runs the code with the module of the build",
-}
+# Begins of commands, the file that runs them, and what stands there for it. The first row that fits counts.
+RUN_BY = [
+    ("pertev ", "tests/robust/cli_documents_test.py", '"pertev"'),
+    ("build/bin/pertev ", "tests/robust/cli_documents_test.py", '"build/bin/pertev"'),
+    ("ffmpeg ", "tests/robust/cli_documents_test.py", '"ffmpeg"'),
+    *((f"python3 examples/{name}.py ", "tests/python/examples_test.py", name) for name in ("turntable", "dataset", "data_loader", "nerf_colmap")),
+    ("tools/measure.py ", "tests/robust/measuring_scripts_test.py", '"measure.py"'),
+    ("tools/make_tables.py", "tests/CMakeLists.txt", "make_tables"),
+    ("PERTEV_SCENES=", ".ci/run", "PERTEV_SCENES"),
+    # People with a GPU begin the last of these, and a clock tools/nightly.
+    ("build/bin/pertev_tests --device cuda", "tools/check_gpu.sh", "--device cuda"),
+    ("python3 tests/images/bitterli_scenes.py ", "tools/check_gpu.sh", "bitterli_scenes"),
+    ("tools/check_gpu.sh ", "", ""),
+    ("tools/nightly", "", ""),
+    *((begin, "tools/nightly", "--commands") for begin in ("./setup.sh", "python3 -m venv venv", "venv/bin/", "cmake ", "ctest ", "ninja ", "build/bin/pertev_",
+                                                   "tools/check_documents.py")),
+]
 FLAG = re.compile(r"(?<![\w/-])--[a-z][a-z-]*[a-z]")
 FOLDERS = ["src", "apps", "tests", "tools", "bench", "cmake", "docs", "examples", "packaging", "scenes"]
 # This section's table has new files, which do not exist yet, and existing files that a change touches, with their number.
@@ -84,16 +96,28 @@ def commands(text):
     return [line for line, _ in shell_lines(text) if is_command(line)]
 
 
-def not_run(text):
-    """The lines of blocks of commands that no test runs."""
-    return [line for line, must in shell_lines(text) if must and not is_command(line)]
+def runner_of(command):
+    """Returns the row of RUN_BY that fits, or None."""
+    return next((row for row in RUN_BY if command.startswith(row[0])), None)
 
 
-def not_run_faults(texts):
-    """Faults of {name: text}: lines that are neither run nor on the list, and entries of the list that no document has."""
-    lines = [(name, line) for name, text in texts.items() for line in not_run(text)]
-    yield from (f"{name}: no test runs this, and NOT_RUN has no reason: {line}" for name, line in lines if not line.startswith(tuple(NOT_RUN)))
-    yield from (f"NOT_RUN: no document has {begin}" for begin in NOT_RUN if not any(line.startswith(begin) for _, line in lines))
+def runner_faults(texts):
+    """Faults of {name: text}: commands that nothing runs, rows of RUN_BY that no document has, and files that do not run theirs."""
+    lines = [(name, line) for name, text in texts.items() for line, must in shell_lines(text) if must or is_command(line)]
+    yield from (f"{name}: RUN_BY has nothing that runs this: {line}" for name, line in lines if not runner_of(line))
+    used = [runner_of(line) for _, line in lines]
+    for row in RUN_BY:
+        begin, file, said = row
+        if row not in used:
+            yield f"RUN_BY: no document has {begin}"
+        if file and said not in (ROOT / file).read_text(encoding="utf-8"):
+            yield f"RUN_BY: {file} says nothing of {said}"
+
+
+def nightly_commands():
+    """The documents' commands that tools/nightly runs, in their order."""
+    return [line for document in documents() for line, must in shell_lines(document.read_text(encoding="utf-8"))
+            if (must or is_command(line)) and (runner_of(line) or ("", ""))[1] == "tools/nightly"]
 
 
 def status_faults(text):
@@ -200,6 +224,11 @@ def own_commands():
         yield from ((script.name, command) for command in inline_commands(parts_of(script)[0]))
     jobs = json.loads((ROOT / "bench/jobs.json").read_text(encoding="utf-8"))
     yield from (("jobs.json", f"pertev {job['line']}") for table in ("parts", "devices") for part in jobs[table].values() for job in part["jobs"])
+    yield from measured_commands()
+
+
+def measured_commands():
+    """Commands of the program in measurements."""
     for path in sorted((ROOT / "bench/results").glob("*.json")):
         command = json.loads(path.read_text(encoding="utf-8"))["command"] or ""
         yield from ((path.name, one) for one in command.split("; ") if re.match(r"(?:\S*/)?pertev ", one))
@@ -217,6 +246,16 @@ def help_faults(name, code):
     """A fault of a script that would take --help for an argument."""
     if '__name__ == "__main__"' in code and "argparse" not in code and '"--help"' not in code and "write_or_check" not in code:
         yield f"{name}: has no --help"
+
+
+def import_faults(name, text, own):
+    """Packages that a script needs even for --help: those of neither Python nor `own`, imported before the help is shown."""
+    for part in ast.parse(text).body:
+        if isinstance(part, ast.If) and '"--help"' in (ast.get_source_segment(text, part.test) or ""):
+            return
+        names = [alias.name for alias in part.names] if isinstance(part, ast.Import) else [part.module] if isinstance(part, ast.ImportFrom) else []
+        yield from (f"{name}: needs {package} for --help (tools/late_import.py)" for package in (one.partition(".")[0] for one in names)
+                    if package not in own and package not in sys.stdlib_module_names)
 
 
 def named_faults(name, text):
@@ -241,9 +280,12 @@ def faults_of_all():
     tracked += [path.name for path in ROOT.glob("*.*")]
     presets = re.findall(r'"name": "([^"]+)"', (ROOT / "CMakePresets.json").read_text(encoding="utf-8"))
     known = "".join(path.read_text(encoding="utf-8") for path in [*(ROOT / "apps/cli").glob("*.cpp"), ROOT / "docs/settings.md"])
+    own_modules = {path.stem for folder in ("tools", "bench", "tests/images", "tests/support", "tests/robust") for path in (ROOT / folder).glob("*.py")}
     for script in scripts():
         yield from own_faults(script.name, *parts_of(script), known)
-        yield from help_faults(script.name, parts_of(script)[1]) if script.suffix == ".py" else ()
+        if script.suffix == ".py":
+            yield from help_faults(script.name, parts_of(script)[1])
+            yield from import_faults(script.name, script.read_text(encoding="utf-8"), own_modules)
     settings = (ROOT / "docs/settings.md").read_text(encoding="utf-8")
     conventions = (ROOT / "docs/conventions.md").read_text(encoding="utf-8").partition("The metadata of an EXR")[2]
     for source in tracked:
@@ -251,7 +293,7 @@ def faults_of_all():
             yield from named_faults(source, (ROOT / source).read_text(encoding="utf-8"))
         if source.startswith("src/session/") and source.endswith(".cpp"):
             yield from metadata_faults(source, (ROOT / source).read_text(encoding="utf-8"), conventions, settings)
-    yield from not_run_faults({document.name: document.read_text(encoding="utf-8") for document in documents()})
+    yield from runner_faults({document.name: document.read_text(encoding="utf-8") for document in documents()})
     words = 0
     for document in documents():
         text = document.read_text(encoding="utf-8")
@@ -283,10 +325,10 @@ def self_test():
     assert anchors_of(text) == {"some-code-a-title"}, anchors_of(text)
     assert commands(text) == ["pertev render a    -o b", "tools/x.py", "./setup.sh", "pertev view c"], commands(text)
     assert commands("```\nx && ctest  # why\n# why\n```\n```python\nctest\n```\n    ninja\n    f = m a\n") == ["ctest", "ninja"]
-    listed = "".join(f"```\n{begin}x\n```\n" for begin in NOT_RUN)
-    assert not list(not_run_faults({"x": listed + "```sh\nctest\n```\n```text\nx\n```\n    x\n"}))
-    assert len(list(not_run_faults({"x": listed + "```\nx --y && ctest\n# why\n```\n"}))) == 1
-    assert len(list(not_run_faults({"x": ""}))) == len(NOT_RUN)
+    listed = "".join(f"```\n{begin}x\n```\n" for begin, _, _ in RUN_BY)
+    assert not list(runner_faults({"x": listed + "```sh\nctest -N\n```\n```text\nx\n```\n    x\n"}))
+    assert len(list(runner_faults({"x": listed + "```\nx --y && ctest -N\n# why\n```\n"}))) == 1
+    assert len(list(runner_faults({"x": ""}))) == len(RUN_BY) and "venv/bin/pip install ." in nightly_commands()
     rows = "<!-- figures -->\n| what | a |\n|---|---|\n{}<!-- end -->\n## Question and file\n| question | file |\n{}"
     for figures, questions, count in ((10, 15, 0), (9, 15, 1), (10, 14, 1), (9, 14, 2)):
         assert len(list(status_faults(rows.format("| x | 1 |\n" * figures, "| a? | b | c? | d |\n" * questions)))) == count
@@ -304,6 +346,8 @@ def self_test():
     assert not list(script_faults("x", "tools/check_sizes.py -- --none")) and not list(script_faults("x", "bench/trace_bench"))
     assert list(own_faults("x", "tools/none.py or --none", "", "")) and not list(own_faults("x", "--a-b, --c", '"--a-b"', '"--c"'))
     assert list(help_faults("x", 'if __name__ == "__main__":')) and not list(help_faults("x", 'import argparse\nif __name__ == "__main__":'))
+    assert list(import_faults("x", "import a.b", {"b"})) and list(import_faults("x", "from a import b", {"b"}))
+    assert not list(import_faults("x", 'import json, b\nif "--help" in c:\n    d()\nimport a', {"b"}))
     assert list(metadata_faults("x", '{"pertev.a", b}', "`b`", "`--b`")) and not list(metadata_faults("x", '"pertev.a" "pertev.b_c"', "`a`", "`--b-c`"))
     assert list(named_faults("x", "// see tools/none.py")) and not list(named_faults("x", "// bench/jobs.json has it"))
     assert "--self-test" in parts_of(pathlib.Path(__file__))[0] and "--self-test" in parts_of(pathlib.Path(__file__))[1]
@@ -321,6 +365,9 @@ def self_test():
 def main(arguments):
     if arguments == ["--self-test"]:
         self_test()
+        return 0
+    if arguments == ["--commands"]:
+        print("\n".join(nightly_commands()))
         return 0
     faults = list(faults_of_all() if arguments != ["--links"] else broken_links(lambda link: urllib.request.urlopen(link, timeout=30).close()))
     print("\n".join(faults) or "documents name what is there")

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Each command of README.md, CONTRIBUTING.md and docs/ that begins with the program is run at small sizes, on small
-substitutes for the files that it names; a viewer until it listens. Commands in PARSED take too long at any size, so only
-their verb and flags are checked. Commands of other programs make dry runs: CTest lists its tests, CMake its
-presets, Ninja its targets, and scripts their help with their flags. `tools/check_documents.py` checks links and
-scripts in sentences."""
+substitutes for the files that it names; a viewer until it listens. Where ffmpeg is missing, its arguments are checked.
+Commands of other programs make dry runs: CTest lists its tests, CMake its presets, Ninja its targets, and scripts their
+help with their flags; `tools/check_documents.py` says what runs them. Commands of measurements run on a scene that does
+not exist, because their words are read first."""
 
 import functools
 import json
@@ -23,7 +23,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 import check_documents  # pylint: disable=wrong-import-position
 
-PARSED = [r"--rays record"] # it needs a public scene
+SCENE = re.compile(r"[A-Z]+(?:\.rad)?|\S+\.(?:obj|gltf|exr)|cornell-box|many-lights|caustic") # a scene in commands of measurements
 SMALL = {"--size": "24x16", "--spp": "1", "--seconds": "0.02", "--depths": "1-2", "--runs": "1", "--repetitions": "2", "--reference-spp": "2",
          "--frames": "0-1", "--turntable": "2"}
 ADDED = {"render": ["--size", "--spp"], "lab": ["--size", "--runs"], "lab --thesis": ["--size", "--runs"], "lab --transport": ["--size", "--seconds", "--repetitions", "--reference-spp"],
@@ -32,6 +32,8 @@ BUILD = pathlib.Path(PROGRAM).resolve().parents[1]
 ALONE = {"tools/make_tables.py": ["--check"]} # it would write files
 QUICK = {"solve radiosity": ["--patch-size", "0.3", "--patch-rays", "16"], "lab": ["--no-heat-maps"],
          "bench": ["--device", "cpu"], "lab --transport": []}
+ROOM = "".join(f"v {x} {y} {z}\n" for x in (-300, 300) for y in (-300, 300) for z in (-300, 300)) + \
+    "".join(f"f {face}\n" for face in ("1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4")) # around the camera of the record
 
 
 def as_glb(text):
@@ -51,9 +53,26 @@ def made_small(words):
     small = []
     for before, word in zip(["", *words], words):
         small.append(SMALL.get(before, word))
+    if "record" in words: # its rays have a size
+        return [*small, "--count", "500", "--runs", "1", *QUICK[verb]]
     for flag in ADDED.get(verb, []):
         small += [] if flag in given else [flag, SMALL[flag]]
     return small + QUICK.get(verb, []) + (["--integrators", "path,light"] if "all" in words else [])
+
+
+def at_nowhere(words):
+    """Returns a command of a measurement with a scene that does not exist."""
+    made = []
+    for before, word in zip(["", *words], words):
+        if before in ("-o", "--job"):
+            made.append(word)
+        elif word == "NAME":
+            made.append("cove" if before == "--preset" else "path")
+        else:
+            made.append("nowhere.obj" if SCENE.fullmatch(word) else word)
+    if "nowhere.obj" in made:
+        return made
+    return ["lab", "nowhere.obj", *made[1:]] if made[0] == "lab" else [*made, "--scene", "nowhere.obj"]
 
 
 class Commands(CliTest):
@@ -71,8 +90,10 @@ class Commands(CliTest):
         shutil.copy(ROOT / "scenes/transport/door.mtl", self.path("door.mtl"))
         for name in ["sky.hdr", "a.exr", "b.exr", "picture.exr", "room.exr"]:
             self.render(scene="room.gltf", size=SMALL["--size"], output=name)
-        # Public scenes, below $S.
-        for name, of in [("sibenik/sibenik.obj", "sponza.obj"), ("crytek-sponza/sponza.obj", "sponza.obj"),
+        pathlib.Path(self.path("room.obj")).write_text(ROOM, encoding="utf-8")
+        # Public scenes, below $S and $PERTEV_SCENES.
+        self.environment["PERTEV_SCENES"] = self.path(".")
+        for name, of in [("sibenik/sibenik.obj", "sponza.obj"), ("crytek-sponza/sponza.obj", "room.obj"),
                          ("gltf/DamagedHelmet/DamagedHelmet.glb", "robot.glb"), ("envmaps/venice_sunset_1k.hdr", "sky.hdr")]:
             pathlib.Path(self.path(name)).parent.mkdir(parents=True)
             shutil.copy(self.path(of), self.path(name))
@@ -106,25 +127,33 @@ class Commands(CliTest):
 
     def test_commands_of_documents_run(self):
         self.stand_in()
-        ran, parsed = 0, 0
+        ran = 0
         for document in check_documents.documents(ROOT):
             for command in check_documents.commands(document.read_text(encoding="utf-8")):
-                words = shlex.split(command)
-                if words[0] not in ("pertev", "build/bin/pertev"):
+                words = shlex.split(command.replace("$S", "."))
+                if words[0] not in ("pertev", "build/bin/pertev", "ffmpeg"):
                     continue
-                words = [word.replace("$S", ".") for word in words[1:]]
                 with self.subTest(document=document.name, command=command):
-                    if words[0] == "view":
-                        self.view(words)
-                        ran += 1
-                    elif any(re.search(pattern, " ".join(words)) for pattern in PARSED):
-                        self.check_flags(words)
-                        parsed += 1
+                    if words[0] == "ffmpeg":
+                        self.encode(words)
+                    elif words[1] == "view":
+                        self.view(words[1:])
                     else:
-                        self.succeed(*made_small(words))
-                        ran += 1
+                        self.succeed(*made_small(words[1:]))
+                    ran += 1
         self.assertGreater(ran, 35)
-        self.assertEqual(parsed, len(PARSED))
+
+    def encode(self, words):
+        """Runs ffmpeg on frames that the command before has written, or checks that its arguments name these and a film."""
+        if shutil.which("ffmpeg"):
+            subprocess.run(words, cwd=self.folder, check=True, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+            self.assertTrue(os.path.exists(self.path(words[-1])))
+            return
+        given = dict(zip(words[1:-1:2], words[2:-1:2]))
+        self.assertEqual(set(given), {"-framerate", "-i", "-pix_fmt"})
+        self.assertGreater(float(given["-framerate"]), 0)
+        self.assertTrue(os.path.exists(self.path(given["-i"] % 0)) and os.path.exists(self.path(given["-i"] % 1)), given["-i"])
+        self.assertRegex(words[-1], r"\.mp4$")
 
     def test_commands_within_sentences_have_flags_that_exist(self):
         found = 0
@@ -146,6 +175,22 @@ class Commands(CliTest):
                 self.check_flags(words)
                 found += 1
         self.assertGreater(found, 80)
+
+    def test_commands_of_measurements_have_what_their_verbs_require(self):
+        made = {tuple(at_nowhere(shlex.split(command)[1:])): name for name, command in check_documents.measured_commands()}
+        for words, name in made.items():
+            with self.subTest(name=name, command=words):
+                self.assertFalse(self.is_misused(words))
+        self.assertGreater(len(made), 50)
+        for words in ("render nowhere.obj", "bench devices", "bench render --job S5", "render nowhere.obj -o a.exr --size 3"):
+            self.assertTrue(self.is_misused(words.split()), words)
+
+    def is_misused(self, words):
+        """Returns whether a command on a scene that does not exist fails because of its words."""
+        outcome = self.run_pertev(*words, "--json")
+        self.assertEqual(outcome.status, 2)
+        error = outcome.events("error")[-1]
+        return "help" in error or error.get("setting", "scene") not in ("scene", "device", "preset", "solution")
 
     def test_an_unknown_flag_in_a_document_is_found(self):
         self.assertNotIn("--no-such-flag", self.flags_of("view"))
@@ -176,7 +221,7 @@ class Commands(CliTest):
                 self.assertGreater(int(re.search(r"filters: (\d+)", self.said(BUILD / "bin" / name, "--count", *chosen))[1]), 0)
             else:
                 self.said("ninja", "-C", BUILD, "-t", "query", name)
-        elif program == "-m": # python3 has it; tests/python/documents_test.py runs what follows
+        elif program == "-m": # python3 has the module
             self.said(sys.executable, *words[:2], "--help")
         elif program.startswith("examples/"): # tests/python/examples_test.py runs them, where the module is built
             self.assertFalse([flag for flag in flags if f'"{flag}"' not in (ROOT / program).read_text(encoding="utf-8")])
