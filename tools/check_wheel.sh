@@ -77,5 +77,5 @@ for suite in bookworm trixie; do
         checked=$((checked + 1))
     done
 done
-[[ -z $report ]] || python3 "$measurement" "$report" "$program" "Wheels in bare systems" "$command" <"$work/rows"
+[[ -z $report ]] || python3 "$measurement" "$report" "$program" "Wheels in bare systems, which give this program's picture" "$command" <"$work/rows"
 echo "$checked wheels of $wheels give the picture $hash"

@@ -7,7 +7,7 @@
 
 A document has `<!-- table: results/FILE.json NAME -->` ... `<!-- end -->`. After the name may stand `columns=KEY,KEY` and
 `where=KEY:VALUE|VALUE`, which select columns and rows. `<!-- figures -->` ... `<!-- end -->` holds the `table` of bench/figures.json.
-Numbers keep the digits that the JSON has. A unit that all columns of figures share stands once, in the head of the first column.
+Numbers keep the digits that the JSON has, or with `digits=N` that many. A unit that all columns of figures share stands once, in the head of the first column.
 
 `date` is when a file was measured; a day alone is that on which the commit `recorded` brought the last of its figures. `program`
 names the version. `command` is what makes them today, several between semicolons; words in capitals stand for files, NAME or SCENE
@@ -95,6 +95,9 @@ def origin_faults(measured):
         if (script := ROOT / one.split(" ")[0]).is_file() and not os.access(script, os.X_OK):
             yield f"{one}: the script is not executable"
         yield from check_documents.script_faults("command", one)
+        if "trace_bench " in one:
+            own = (ROOT / "bench/trace_bench.cpp").read_text(encoding="utf-8")
+            yield from (f"{one}: there is no {flag}" for flag in check_documents.FLAG.findall(one) if f'"{flag}' not in own)
         for pattern in re.findall(r"--source-file='?([^\s']+)", one):
             if not any((ROOT / "tests").rglob(pattern)):
                 yield f"{one}: there is no such test"
@@ -128,13 +131,15 @@ def unknown_commits(files):
 
 
 def pick(table, options):
-    """Indices of the columns and the rows that the options select."""
+    """Indices of the columns and the rows that the options select, and the number of digits, or None."""
     keys = [column["key"] for column in table["columns"]]
-    columns, rows = list(range(len(keys))), table["rows"]
+    columns, rows, digits = list(range(len(keys))), table["rows"], None
     for word in options.split():
         what, value = word.split("=", 1)
         if what == "columns":
             columns = [keys.index(key) for key in value.split(",")]
+        elif what == "digits":
+            digits = int(value)
         elif what == "where":
             key, values = value.split(":", 1)
             wanted = {v.replace("_", " ") for v in values.split("|")}
@@ -143,23 +148,23 @@ def pick(table, options):
             if unmet:
                 raise ValueError(f"{word} names {', '.join(sorted(unmet))}, which no row is")
         else:
-            raise ValueError(f"{word} is neither columns= nor where=")
-    return columns, rows
+            raise ValueError(f"{word} is none of columns=, where= and digits=")
+    return columns, rows, digits
 
 
-def source_of(path, measured):
-    """One line that says where the figures come from."""
+def source_of(path, measured, up="../"):
+    """One line that says where the figures come from. `up` leads from the document's folder to that of the sources."""
     where = measured["device"] or ("any machine" if measured["processor"] == "any" else measured["processor"])
     parts = [where, f"driver {measured['driver']}" if measured["driver"] else None,
              (measured["program"] or "").removeprefix("pertev "), (measured["date"] or "")[:10]]
-    return f"([{pathlib.PurePath(path).stem}](../bench/{path}): {', '.join(p for p in parts if p)})\n"
+    return f"([{pathlib.PurePath(path).stem}]({up}bench/{path}): {', '.join(p for p in parts if p)})\n"
 
 
-def render(path, measured, name, options):
+def render(path, measured, name, options, up="../"):
     table = next((t for t in measured["tables"] if t["name"] == name), None)
     if table is None:
         raise ValueError(f"{path} has no table {name}")
-    columns, rows = pick(table, options)
+    columns, rows, digits = pick(table, options)
     heads = [table["columns"][c] for c in columns]
     numeric = [any(isinstance(row[c], Digits) for row in rows) and i > 0 for i, c in enumerate(columns)]
     units = [h["unit"] for h in heads if h.get("unit")]
@@ -170,12 +175,14 @@ def render(path, measured, name, options):
         return ", ".join(part for part in (head["title"], unit) if part)
 
     def cell(value):
+        if digits and isinstance(value, Digits):
+            return f"{value:.{digits}g}"
         return "" if value is None else str(value).replace("|", "\\|").replace("*", "\\*")
 
     lines = ["| " + " | ".join(title(i, h) for i, h in enumerate(heads)) + " |",
              "|" + "|".join("---:" if n else "---" for n in numeric) + "|"]
     lines += ["| " + " | ".join(cell(row[c]) for c in columns) + " |" for row in rows]
-    return "\n" + "\n".join(lines) + "\n\n" + source_of(path, measured)
+    return "\n" + "\n".join(lines) + "\n\n" + source_of(path, measured, up)
 
 
 def figures(rows, read):
@@ -203,8 +210,8 @@ def figures(rows, read):
     return "\n" + "\n".join(lines) + "\n\n"
 
 
-def remade(text, read):
-    text = MARKER.sub(lambda m: m[1] + render(m[2], read(m[2]), m[3], m[4]) + m[6], text)
+def remade(text, read, up="../"):
+    text = MARKER.sub(lambda m: m[1] + render(m[2], read(m[2]), m[3], m[4], up) + m[6], text)
     return FIGURES.sub(lambda m: m[1] + figures(json.loads((ROOT / "bench/figures.json").read_text(encoding="utf-8"))["table"], read) + m[3], text)
 
 
@@ -220,7 +227,7 @@ def self_test():
     assert faults_of("x", {**good, "tables": good["tables"] * 2})
     assert faults_of("x", {**good, "tables": [{**good["tables"][0], "columns": [{"key": "k", "title": "a, ms", "unit": None}], "rows": [[1]]}]})
     for key, bad in (("date", ["2026-11-26", "2026-11-26T16:12:08", "2026-13-01", ""]), ("program", ["pertev", "", 3]), ("driver", ["1"]),
-                     ("command", ["", "x", "pertev bench; ", "tools/none.py", "tools/mutations.py", "tools/check_sizes.py --none", "pertev_tests --source-file=none", "pertev bench --job S5|S8", "pertev bench, and later"])):
+                     ("command", ["", "x", "pertev bench; ", "tools/none.py", "tools/mutations.py", "tools/check_sizes.py --none", "pertev_tests --source-file=none", "build/bin/trace_bench a --none", "pertev bench --job S5|S8", "pertev bench, and later"])):
         for value in [*bad, None] if key != "driver" else bad:
             assert faults_of("x", {**good, key: value}), (key, value)
             assert key == "driver" or value is not None or not faults_of("x", {**good, key: value, "unknown": {key: "Why."}})
@@ -234,10 +241,12 @@ def self_test():
     text = render("results/x.json", good, "a", "")
     one_unit = {**good, "tables": [{**good["tables"][0], "columns": [{**column, "unit": "s" if k else None} for k, column in enumerate(good["tables"][0]["columns"])]}]}
     assert source_of("results/x.json", {**good, "processor": "any"}) == "([x](../bench/results/x.json): any machine, 0adaae0, 2026-11-26)\n"
+    assert source_of("results/x.json", {**good, "processor": "any"}, "").startswith("([x](bench/results")
     assert "| scene, s | rays | seconds |" in render("results/x.json", one_unit, "a", "")
     assert "| scene | rays, Mrays/s | seconds, s |" in text and "| Sponza | 1.10 |  |" in text and "3e-5" in text, text
     chosen = render("results/x.json", good, "a", "columns=k,r where=k:two_words")
     assert "1.10" not in chosen and "| two words | 2 |" in chosen, chosen
+    assert "| two words | 2 | 3e-05 |" in render("results/x.json", good, "a", "digits=2")
     chosen = {"what": "w", "pertev": "{r}", "beside": "O: {s}", "ratio": "{r / s}", "file": "results/x.json", "table": "a", "row": "two words"}
     assert "| w | 2 | O: 3e-5 | 66667 | [x](../bench/results/x.json) |" in figures([chosen], lambda _: good)
     del chosen["row"]
@@ -265,12 +274,12 @@ def main(arguments):
         faults += faults_of(name, seen[name])
     faults += unknown_commits(seen)
     faults += peer_faults(seen, json.loads((ROOT / "bench/figures.json").read_text(encoding="utf-8")))
-    for document in sorted([*(ROOT / "docs").glob("*.md"), ROOT / "README.md"]):
+    for document in check_documents.documents():
         text = document.read_text(encoding="utf-8")
         if text.count("<!-- table:") != len(MARKER.findall(text)):
             faults.append(f"{document.name}: a table's marker is not well formed, or has no end")
         try:
-            new = remade(text, lambda name: seen[name])
+            new = remade(text, lambda name: seen[name], "../" if document.parent != ROOT else "")
         except (KeyError, ValueError) as error:
             faults.append(f"{document.name}: {error}")
             continue

@@ -54,6 +54,10 @@ def measured(command, folder):
     return seconds, own_end - own, max(0, all_end - all_cores - own_end + own) / seconds
 
 
+def rounded(value):
+    return round(value) if value >= 100 else float(f"{value:.3g}")
+
+
 def megabytes(folder):
     return sum(path.lstat().st_size for path in folder.rglob("*")) / 1e6
 
@@ -69,7 +73,7 @@ def rows_of(commit, steps, work):
             subprocess.run(["git", "-C", folder, "checkout", "-q", commit], check=True)
         measured(before, folder)
         seconds, cores, others = measured(command, folder)
-        yield [title, commit, *(float(f"{value:.3g}") for value in (seconds, cores, megabytes(folder / "build"))), round(others, 2)], folder / "build/bin/pertev"
+        yield [title, commit, *(rounded(value) for value in (seconds, cores, megabytes(folder / "build"))), round(others, 2)], folder / "build/bin/pertev"
 
 
 def main():

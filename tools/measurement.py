@@ -39,14 +39,20 @@ def own_command():
 
 
 def write_measurement(path, program, title, columns, rows, device, threads, notes=(), table="jobs", command=None):
-    """A measurement with one table; columns are (key, title, unit). The command is that of this process unless it is given."""
+    """Writes a measurement with one table; columns are (key, title, unit)."""
+    write_tables(path, program, title, [(table, columns, rows)], device, threads, notes, command)
+
+
+def write_tables(path, program, title, tables, device, threads, notes=(), command=None):
+    """Writes a measurement of tables (name, columns, rows). The command is that of this process unless it is given."""
     version = subprocess.run([program, "--version"], stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()[0]
     name, driver = gpu_of(device)
     measured = {
         "format": "pertev-measurement", "version": 1, "program": version,
         "date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"), "command": command or own_command(),
         "processor": processor(), "threads": threads, "device": name, "driver": driver, "title": title, "notes": list(notes),
-        "tables": [{"name": table, "title": title, "columns": [dict(zip(("key", "title", "unit"), column)) for column in columns], "rows": rows}],
+        "tables": [{"name": name, "title": title, "columns": [dict(zip(("key", "title", "unit"), column)) for column in columns], "rows": rows}
+                   for name, columns, rows in tables],
     }
     pathlib.Path(path).write_text(json.dumps(measured, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
 

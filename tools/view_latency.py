@@ -6,7 +6,9 @@ Steers a viewer 60 times a second through a WebSocket on this machine, decodes e
 would, and acknowledges it then. For each encoder: milliseconds from an input to the first decoded picture that shows it
 (by the number of the input that the picture's header has), and what of that is beyond the frame itself (its stages, as
 the panel has them): medians and 95th percentiles. Before that, the JPEG of a still picture is held to its PNG. Exits 1
-where colours differ or more than `--most` milliseconds (50) are beyond the frame, at the median."""
+where colours differ or more than `--most` milliseconds (50) are beyond the frame, at the median.
+
+With --rest nobody steers: seconds from the page's hello, and from a setting, to the first picture of each size."""
 
 import argparse
 import ctypes
@@ -147,6 +149,31 @@ class Steered:
             self.rate.append(float(rows["Frames", "rendered"].split()[0]))
 
 
+def seconds_to_sizes(client, shape, number=0):
+    """Seconds from now until the first picture of each size that shows the input `number`, up to the whole picture."""
+    start, seconds = time.monotonic(), {}
+    while shape not in seconds:
+        message = client.receive()
+        if isinstance(message, tuple) and message[0]["kind"] == 1 and message[0]["input"] >= number:
+            seconds.setdefault(f"{message[0]['width']}x{message[0]['height']}", time.monotonic() - start)
+    return seconds
+
+
+def measure_rest(given, flags):
+    """Writes a row for the page's hello and one for a setting, with a column for each size."""
+    with Viewer(*flags, scene=given.scene, size=given.size, spp=64, device=given.device) as viewer, Client(viewer) as client:
+        hello = seconds_to_sizes(client, given.size)
+        setting = seconds_to_sizes(client, given.size, client.set("max_depth", 4))
+    sizes = sorted(hello.keys() | setting.keys(), key=lambda size: int(size.split("x")[0]))
+    rows = [[since, *(float(f"{of[size]:.2g}") if size in of else None for size in sizes)] for since, of in (("the page's hello", hello), ("a setting", setting))]
+    print(*sizes, sep="\t")
+    for row in rows:
+        print(*row, sep="\t")
+    if given.output:
+        columns = [("since", "seconds from", None), *((size, size, "s") for size in sizes)]
+        write_measurement(given.output, given.pertev, "The viewer at rest", columns, rows, given.device, os.cpu_count(), table="sizes")
+
+
 def share(values, part):
     return sorted(values)[min(int(part * len(values)), len(values) - 1)] if values else float("nan")
 
@@ -160,9 +187,13 @@ def main():
     parser.add_argument("--seconds", type=float, default=10)
     parser.add_argument("--most", type=float, default=50, help="milliseconds beyond the frame, at the median")
     parser.add_argument("-o", "--output", metavar="MEASUREMENT.json")
+    parser.add_argument("--rest", action="store_true", help="measure a picture at rest")
     own = sys.argv[1:]
     more = own[own.index("--") + 1 :] if "--" in own else []
     given = parser.parse_args(own[: len(own) - len(more) - 1] if "--" in own else own)
+    if given.rest:
+        measure_rest(given, more)
+        return
     jpeg, is_good, rows = Jpeg(os.path.abspath(given.pertev)), True, []
     for encoder in ["auto", "cpu"] if given.device != "cpu" else ["cpu"]:
         flags = ["--jpeg", encoder, *more]

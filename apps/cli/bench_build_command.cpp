@@ -51,7 +51,7 @@ void add_build(const std::string& scene, std::string_view tree, const std::strin
     report.add(
         "build",
         head_of(scene, "tree", tree, device, triangles) + time_fields(times) +
-            Fields{{"triangles_per_second", "Mtri/s", millions_a_second(triangles, times.median) * 1e6, "", "{:.3g}"},
+            Fields{{"triangles_per_second", "tri/s", millions_a_second(triangles, times.median) * 1e6, "", "{:.3g}"},
                    {"nodes", "nodes", nodes},
                    {"depth", "depth", depth},
                    {"sah_cost", "cost", static_cast<double>(cost), "", "{:.3f}"},

@@ -37,8 +37,8 @@ public:
 
     /// Discards the history, because the next frame is unrelated to it.
     void cut() { frames_ = 0; }
-    /// Lets the next frames make this device's rows alone, and take others' from `others`; null: make all rows. Rows
-    /// of the last frame that others made are to be in rows_of_history() before the next one.
+    /// Makes the next frames compute only this device's rows and take the rest from `others`; with null they compute
+    /// all rows. Before a frame, rows_of_history() must hold the rows of the last frame that others computed.
     void share(RowExchange* others) { others_ = others; }
     /// Arrays of the last frame that the next one needs; none after a cut.
     std::vector<RowArray> rows_of_history() const;

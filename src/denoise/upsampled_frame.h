@@ -21,7 +21,7 @@ public:
     void add(const NoisyFrame& features, const CameraView& camera, const CoarseLight& light, const SteadyLight& steady,
              const SceneView& scene, const PreviousScene& before, const ReconstructionSettings& settings,
              bool has_history, RowExchange* others = nullptr);
-    /// Makes shown(), which the caller then fills, the picture before the next one; `camera` is that picture's.
+    /// Marks shown(), which the caller then fills, as the picture before the next one, rendered with `camera`.
     void begin_after(const CameraView& camera) { last_camera_ = camera; }
     /// Rows of the light, `height` in all, that this device's rows of the picture read.
     RowBand rows_of_light(const RowExchange* others, uint32_t height) const;

@@ -44,7 +44,7 @@ bool contains(const Bounds3& bounds, Vec3 p) {
            p.z <= bounds.hi.z;
 }
 
-/// Directions of lines from a point, of which two of three decide, because one may meet an edge.
+/// Directions of three lines from a point. Two of them decide, because one may meet an edge.
 constexpr DoubleVec3 kDirections[] = {{0.5773, 0.5221, 0.6279}, {-0.3117, 0.8891, -0.3353}, {0.1213, -0.4391, 0.8903}};
 
 } // namespace

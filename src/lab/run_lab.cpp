@@ -161,7 +161,7 @@ private:
                                          : make_frame_ray_sets(job, settings_.depth - 1);
     }
 
-    /// Runs f and, if memory runs out, reports what it was for. Throws Error(OutOfMemory) before that if not even the
+    /// Runs f; an error of exhausted memory says what it was for. Throws Error(OutOfMemory) before that if not even the
     /// camera rays and their hits fit.
     template <class F>
     void with_memory_for_rays(const F& f) const {

@@ -42,8 +42,8 @@ struct Instance {
     /// True for a generated ground: rays hit it, but ids, layers and alpha treat it as background, and bounds_of()
     /// ignores it. Only the last instance may be one.
     bool is_background = false;
-    /// Number of instances directly before this one that are the same triangles in the same place. By their alphas a
-    /// ray meets one of such layers; the first one comes first.
+    /// Number of instances directly before this one that are the same triangles in the same place. Their alphas
+    /// decide which of such layers a ray hits; the first one comes first.
     uint32_t layers_above = 0;
 };
 

@@ -183,9 +183,9 @@ HD inline Rgb emitted_power(const PunctualLight& light, const PunctualEmission& 
     return power;
 }
 
-/// Returns the power in watts of a light with this intensity; for a directional light, what enters a disc of `radius`
-/// metres. The edge of a cone is the square of a ramp in the cosine, which contributes a third of its width. A table
-/// counts by the mean of its channels.
+/// Returns the power in watts of a light with this intensity; for a directional light, the power that enters a disc
+/// of `radius` metres. The edge of a cone is the square of a ramp in the cosine, which contributes a third of its
+/// width. A table counts by the mean of its channels.
 inline double punctual_power(const Light& light, double intensity, double radius) {
     const double inner = static_cast<double>(light.cos_inner), outer = static_cast<double>(light.cos_outer);
     switch (light.kind) {

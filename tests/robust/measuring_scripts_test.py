@@ -13,6 +13,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 import check_stalls  # noqa: E402  pylint: disable=wrong-import-position
 import measure_builds  # noqa: E402  pylint: disable=wrong-import-position
+import measure_tests  # noqa: E402  pylint: disable=wrong-import-position
 import make_tables  # noqa: E402  pylint: disable=wrong-import-position
 
 
@@ -54,6 +55,24 @@ class Scripts(CliTest):
         self.assertEqual(same.stdout.count(" same\n"), 2)  # a picture, and light at a point
         bad = self.run_script("compare_devices.py", "1", "--only", "cornell-box", "--devices", "cpu", "nothing")
         self.assertEqual((bad.returncode, bad.stdout.count(" DIFFERENT\n")), (1, 2))
+
+    def test_errors_of_pictures_and_what_tests_print_become_tables(self):
+        done = self.run_script("measure_errors.py", "denoiser", "--seeds", "1", "-o", "errors.json", "--", "--size", "24x16")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        (scene, *flips), = self.rows_of("errors.json")
+        self.assertEqual(scene, "cornell-box")  # the folder has no other
+        self.assertTrue(flips[0] > flips[2] > 0 and min(flips) > 0, flips)
+        printed = "x.cpp(3): MESSAGE: box, 1 pass: whole -0.0031, block 2e-05\nx.cpp(9): MESSAGE: 32 rays: variance 0.00157\nno row: 1\n"
+        self.assertEqual(list(measure_tests.tables_of(printed, ["scene", "part"])),
+                         [("whole", [("scene", "scene", None), ("part", "part", None), ("whole", "whole", None), ("block", "block", None)], [["box", "1 pass", -0.0031, 2e-5]]),
+                          ("variance", [("scene", "scene", None), ("variance", "variance", None)], [["32 rays", 0.00157]])])
+
+    def test_a_viewer_at_rest_has_a_time_for_each_size(self):
+        subprocess.run([ROOT / "tools/view_latency.py", PROGRAM, "cornell-box", "--device", "cpu", "--rest", "--size", "64x48", "-o", self.path("rest.json")],
+                       check=True, stdout=subprocess.DEVNULL)
+        hello, setting = self.rows_of("rest.json")
+        self.assertEqual((hello[0], setting[0]), ("the page's hello", "a setting"))
+        self.assertTrue(0 < hello[-1] < 60 and 0 < setting[-1] < 60)
 
     def test_tables_of_shell_scripts_become_measurements(self):
         subprocess.run([ROOT / "tools/measurement.py", self.path("table.json"), PROGRAM, "A title", "tools/check_wheel.sh WHEELS PROGRAM"], check=True,

@@ -46,9 +46,16 @@ struct Row {
     double ours[3], khronos[3];
 };
 
+/// Prints a row of the document's table (tools/measure_tests.py).
+void print_albedos(const char* lobe, float roughness, const double (&here)[3], const double (&there)[3]) {
+    MESSAGE(lobe, ", ", roughness, ": Pertev at 0 ", here[0], ", Pertev at 45 ", here[1], ", Pertev at 75 ", here[2],
+            ", formula at 0 ", there[0], ", formula at 45 ", there[1], ", formula at 75 ", there[2]);
+}
+
 template <class Make, class Brdf>
 void check(const char* lobe, std::initializer_list<Row> rows, const Make& make, const Brdf& brdf) {
-    for (const Row& row : rows)
+    for (const Row& row : rows) {
+        double all_here[3] = {}, all_there[3] = {};
         for (int k = 0; k < 3; ++k) {
             const double here = ours(make(row.roughness), kAngles[k]);
             const double there =
@@ -58,7 +65,10 @@ void check(const char* lobe, std::initializer_list<Row> rows, const Make& make, 
             CAPTURE(kAngles[k]);
             CHECK(here == doctest::Approx(row.ours[k]).epsilon(0.006));
             CHECK(there == doctest::Approx(row.khronos[k]).epsilon(0.006));
+            all_here[k] = here, all_there[k] = there;
         }
+        print_albedos(lobe, row.roughness, all_here, all_there);
+    }
 }
 
 } // namespace
@@ -69,13 +79,17 @@ TEST_CASE("albedos of fuzz are those of the document, near those that MaterialX'
         double ours[3], materialx[3];
     } rows[] = {{0.3f, {0.001, 0.005, 0.155}, {0.002, 0.004, 0.161}},
                 {1, {0.341, 0.421, 0.616}, {0.345, 0.417, 0.613}}};
-    for (const auto& row : rows)
+    for (const auto& row : rows) {
+        double all[3] = {};
         for (int k = 0; k < 3; ++k) {
             const auto cosine = static_cast<float>(std::cos(kAngles[k] * std::numbers::pi / 180));
             const double here = mean_weight(make_fuzz(Bsdf{}, grey(1), row.roughness), direction_at(cosine), 1 << 16).g;
             CHECK(here == doctest::Approx(row.ours[k]).epsilon(0.006).scale(0.1));
             CHECK(std::abs(here - row.materialx[k]) < 0.01);
+            all[k] = here;
         }
+        print_albedos("Zeltner's sheen (beside MaterialX)", row.roughness, all, row.materialx);
+    }
 }
 
 TEST_CASE("albedos of lobes and of Khronos's formulas are those of the document") {

@@ -15,7 +15,7 @@
 
 namespace pertev::described {
 
-/// Reads the values of a light's table. A picture that cannot be read is left out with the light: nothing.
+/// Reads the values of a light's table. Returns nothing for an unreadable picture, which is left out with the light.
 std::optional<Image> read_light_picture(const std::filesystem::path& path, Sink& sink);
 
 /// Returns the nearest angle in [least, most], degrees. If that is another one, it warns that the parameter `name` at

@@ -201,7 +201,7 @@ bool World::fill(Placed& placed) {
     return true;
 }
 
-/// Reports media that nothing defines, and finds what is around everything.
+/// Reports undefined media, and finds the medium around the whole scene.
 void World::finish_media() {
     for (const auto& [name, medium] : media_) {
         if (medium.is_defined) continue;

@@ -11,7 +11,7 @@ namespace pertev {
 inline constexpr uint32_t kConnectedAtOnce = 4;
 
 /// The stage that shades hits of camera subpaths, and scatterings in media: emission, next-event estimation,
-/// continuation. With kInMedia in a scene with media. `Choice` selects lights (shading/light_set.h).
+/// continuation. kInMedia is for scenes with media. `Choice` selects lights (shading/light_set.h).
 template <ShadingVariant kVariant, bool kInMedia = false, class Choice = ChosenByPower>
 struct ShadeCameraSubpaths {
     SubpathScene scene;
@@ -302,7 +302,7 @@ HD inline Vec3 position_of(const SceneView& scene, const SubpathVertex& vertex) 
 }
 
 /// The stage that connects pair i: the current round's vertex i % vertices and vertex first + i / vertices of its
-/// sample's light subpath. With kInMedia in a scene with media.
+/// sample's light subpath. kInMedia is for scenes with media.
 template <ShadingVariant kVariant, bool kInMedia = false>
 struct ConnectSubpaths {
     SubpathScene scene;
