@@ -170,7 +170,7 @@ def measure_rest(given, flags):
     for row in rows:
         print(*row, sep="\t")
     if given.output:
-        columns = [("since", "seconds from", None), *((size, size, "s") for size in sizes)]
+        columns = [("since", "since", None), *((size, size, "s") for size in sizes)]
         write_measurement(given.output, given.pertev, "The viewer at rest", columns, rows, given.device, os.cpu_count(), table="sizes")
 
 
@@ -191,6 +191,8 @@ def main():
     own = sys.argv[1:]
     more = own[own.index("--") + 1 :] if "--" in own else []
     given = parser.parse_args(own[: len(own) - len(more) - 1] if "--" in own else own)
+    if os.path.exists(given.scene):  # the viewer runs in a folder of its own
+        given.scene = os.path.abspath(given.scene)
     if given.rest:
         measure_rest(given, more)
         return

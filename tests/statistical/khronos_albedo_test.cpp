@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <numbers>
+#include <string>
 
 #include "tests/statistical/bsdf_cases.h"
 
@@ -47,7 +48,7 @@ struct Row {
 };
 
 /// Prints a row of the document's table (tools/measure_tests.py).
-void print_albedos(const char* lobe, float roughness, const double (&here)[3], const double (&there)[3]) {
+void print_albedos(const std::string& lobe, float roughness, const double (&here)[3], const double (&there)[3]) {
     MESSAGE(lobe, ", ", roughness, ": Pertev at 0 ", here[0], ", Pertev at 45 ", here[1], ", Pertev at 75 ", here[2],
             ", formula at 0 ", there[0], ", formula at 45 ", there[1], ", formula at 75 ", there[2]);
 }
@@ -111,7 +112,7 @@ TEST_CASE("albedos of lobes and of Khronos's formulas are those of the document"
         });
     const auto widths = [](float r) { return anisotropic_widths(r * r, 0.7f, {1, 0}); };
     check(
-        "brushed metal of 0.5",
+        "brushed metal of 0.5 (anisotropy 0.7)",
         {{0.3f, {0.409, 0.411, 0.466}, {0.398, 0.394, 0.435}}, {0.6f, {0.380, 0.398, 0.450}, {0.326, 0.339, 0.405}}},
         [](float r) {
             return make_reflection({.base_color = grey(0.5f), .metallic = 1, .roughness = r, .anisotropy = 0.7f});
@@ -129,7 +130,7 @@ TEST_CASE("albedos of lobes and of Khronos's formulas are those of the document"
             return (1 - f) * kGrey + f * microfacets(wo, wi, r);
         });
     check(
-        "sheen alone",
+        "sheen of 1 alone",
         {{0.3f, {0.000, 0.043, 0.403}, {0.000, 0.043, 0.404}}, {1, {0.141, 0.221, 0.389}, {0.141, 0.221, 0.389}}},
         [](float r) { return make_sheen(Bsdf{}, grey(1), r); },
         [&](Vec3 wo, Vec3 wi, float r) {
