@@ -96,6 +96,8 @@ MUTATIONS = [
      ("src/formats/gltf/draco.cpp", "mesh.face(face)[corner].value()", "mesh.face(face)[2 - corner].value()")),
     ("Draco's vertices are not counted", "unit/read_gltf_compressed", ("src/formats/gltf/draco.cpp", "mesh->num_points() != points", "false")),
     ("WebP has no alpha", "unit/read_gltf_compressed", ("src/image/decode_webp.cpp", "WebPDecodeRGBAInto(", "WebPDecodeARGBInto(")),
+    ("credits of several files count as one", "unit/read_gltf_nodes",
+     ("src/formats/gltf/credits.cpp", "std::views::split(credits, kBetweenCredits)", "std::views::single(credits)")),
     ("alternatives of XMP are all told", "unit/read_gltf_compressed", ("src/formats/gltf/credits.cpp", ", \"rdf:_1\"", "")),
     ("a texture that is scaled down has the mean of its bytes", "unit/shrink_image",
      ("src/image/shrink_image.cpp", "is_srgb && c < 3 ? linear[byte]", "false ? linear[byte]")),

@@ -1,6 +1,10 @@
 """Mutations of what divides a picture: film files, checkpoints, parts, devices. See mutations.py."""
 
 MUTATIONS = [
+    ("devices that differ end with status 0", "robust/measuring_scripts",
+     ("tools/compare_devices.py", 'any(row[-1] == "no" for', 'any(row[-1] == "none" for')),
+    ("a measured build has no core time", "robust/measuring_scripts",
+     ("tools/measure_builds.py", "own_end - own, max(", "seconds * 0, max(")),
     ("films that overlap in one sample are merged", "consistency/film_files",
      ("src/render/row_samples.cpp", "next->first < range.end", "next->first + 1 < range.end")),
     ("rows beside rows without samples take their light", "robust/cli_merge",
