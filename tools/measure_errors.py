@@ -18,7 +18,7 @@ import subprocess
 import sys
 import tempfile
 
-from measure import OWN, make_scenes, with_flags, words_of
+from measure import OWN, with_flags, words_of
 from measurement import write_tables
 
 COLUMNS = [("scene", "scene", None), ("picture", "picture", None), ("rel_mse", "relMSE", None), ("rel_mse_98", "relMSE of the best 98 %", None),
@@ -97,7 +97,6 @@ def main():
     kind, rows = sets[given.set], []
     with tempfile.TemporaryDirectory() as work:
         places = {"scenes": os.path.abspath(given.scenes), "work": work, "own": OWN}
-        make_scenes(pathlib.Path(given.scenes), pathlib.Path(work))
         for scene in kind["scenes"]:
             file = scene["file"].format(**places)
             if os.path.isabs(file) and not os.path.exists(file):
