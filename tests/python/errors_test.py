@@ -148,7 +148,7 @@ class Errors(unittest.TestCase):
                 self.refused(pertev.InputError, name, lambda: render(**{name: wrong}))
         self.refused(pertev.InputError, "reference", lambda: pertev.compare(numpy.zeros((4, 4, 3)), numpy.zeros((5, 4, 3))))
 
-        class OnDevice:  # What an array of Warp has.
+        class OnDevice:  # It has what an array of Warp has.
             def __init__(self, values):
                 self.numpy = lambda: numpy.array(values)
 
