@@ -78,5 +78,5 @@ MUTATIONS = [
     ("light trapped between mirrors never ends by chance", "statistical/glowing_room unit/subpaths", ("src/shading/survival.h", "scatterings > 64 ?", "false ?")),
     ("little loss in many scatterings ends paths", "unit/subpaths", ("src/integrators/subpaths/subpath_vertex.h", "if (sample.is_delta()) chance", "chance")),
     ("hits are sorted by the groups of other materials", "unit/order_hits", ("src/integrators/path/order_hits.h", "[scene.instances[instance].material]", "[instance]")),
-    ("hits are sorted into the places of other groups", "unit/order_hits", ("src/integrators/path/order_hits.h", "k < group;", "k <= group;")),
+    ("hits are sorted into the places of other groups", "unit/order_hits", ("src/integrators/path/order_hits.h", "k < group;", "k + 1 < group;")),
 ]
