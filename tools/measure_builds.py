@@ -4,8 +4,8 @@
     tools/measure_builds.py [STEP ...] [--commits COMMIT ...] [-o MEASUREMENT.json]
 
 Each commit (HEAD) is cloned into a new folder and built without a compiler cache. Steps, in this order: `first` is README's first
-command up to its picture, `tests` builds the tests besides, `fast` runs those with that label, `lobe` builds and runs the tests of
-src/shading after a lobe's header has changed, `cuda` is the first command with --cuda, for one architecture, `ci` is .ci/run; the last
+command up to its picture, `tests` builds the tests besides, `fast` runs those with that label, `lobe` builds and runs the
+chi-square tests of lobes after a lobe's header has changed, `cuda` is the first command with --cuda, for one architecture, `ci` is .ci/run; the last
 two have clones of their own. Without names the first four are measured. The last column has what other processes took meanwhile, of
 all cores, because a figure counts only where that is little.
 """
@@ -27,8 +27,8 @@ STEPS = {  # title, what is done before, and what is measured
     "first": ("README's first command", "true", f"./setup.sh && {PICTURE}"),
     "tests": ("tests besides, built", "true", "./setup.sh --tests --build-only"),
     "fast": ("`ctest -L fast -j 2`", "true", "ctest --test-dir build -L fast -j 2"),
-    "lobe": ("tests of `src/shading` after a lobe was edited", "ninja -C build pertev_shading_tests && touch src/shading/lobes/diffuse_lobe.h",
-             "ninja -C build pertev_shading_tests && build/bin/pertev_shading_tests"),
+    "lobe": ("a lobe's chi-square tests after it was edited", "ninja -C build pertev_shading_tests && touch src/shading/lobes/diffuse_lobe.h",
+             "ninja -C build pertev_shading_tests && build/bin/pertev_shading_tests --source-file='*bsdf_sampling*'"),
     "cuda": ("the first with `--cuda`", "true", f"./setup.sh --cuda && {PICTURE}"),
     "ci": ("`.ci/run`", "true", ".ci/run"),
 }
