@@ -133,7 +133,7 @@ Hash128 lights_hash(const Scene& scene) {
     Hasher hasher;
     for (const Light& light : scene.lights) {
         hasher.add_value(static_cast<uint32_t>(light.kind));
-        add_bytes(hasher, light.intensity);
+        add_bytes(hasher, shown_intensity(light));
         const LightParts parts = parts_of(light.kind);
         if (parts.position) {
             add_bytes(hasher, light.position);

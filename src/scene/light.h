@@ -34,7 +34,12 @@ struct Light {
     std::shared_ptr<const IntensityTable> table;
     Vec3 up = {0, 0, -1};
     bool is_mirrored = false;
+
+    bool is_hidden = false; // its node is not visible: it gives no light
 };
+
+/// Returns what a light gives now, in the unit of its intensity.
+inline Rgb shown_intensity(const Light& light) { return light.is_hidden ? Rgb{0, 0, 0} : light.intensity; }
 
 /// Properties that a kind of light has besides its strength.
 struct LightParts {

@@ -100,7 +100,7 @@ void add_triangles(const Scene& scene, Vec3 centre, LightSetData& data) {
 void add_punctual_lights(const Scene& scene, Vec3 centre, LightSetData& data) {
     std::map<const IntensityTable*, uint32_t> first_with; // the number of the first light with a table
     for (const Light& light : scene.lights) {
-        PunctualLight punctual = {light.kind,      light.position - centre, light.direction, light.intensity,
+        PunctualLight punctual = {light.kind,      light.position - centre, light.direction, shown_intensity(light),
                                   light.cos_inner, light.cos_outer,         light.range};
         punctual.number = static_cast<uint32_t>(data.punctual.size());
         if (parts_of(light.kind).table) {

@@ -403,7 +403,7 @@ TEST_CASE("KHR_animation_pointer shows and hides nodes with all that they hold")
             R"("nodes":[{"mesh":0},{)" +
             hidden +
             R"(,"children":[2,3,5]},)"
-            R"({"mesh":0,"translation":[2,0,0]},{"extensions":{"KHR_lights_punctual":{"light":0}}},)"
+            R"({"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,2,0,0,1]},{"extensions":{"KHR_lights_punctual":{"light":0}}},)"
             R"({"mesh":0,)" +
             hidden + R"(},{"mesh":1,"skin":0}],"animations":[{"samplers":[)" +
             sampler(1, 2, R"(,"interpolation":"STEP")") + "," + sampler(1, 3) + more_samplers + R"(],"channels":[)" +
@@ -424,18 +424,16 @@ TEST_CASE("KHR_animation_pointer shows and hides nodes with all that they hold")
         return nodes;
     };
     CHECK(seen() == std::vector<uint32_t>{0});
-    CHECK(scene.lights[0].intensity.g == 0);
-    posed.edit([](Scene& rest) {
-        CHECK(rest.lights[0].intensity.g == 5);
-        return SceneUpdate{};
-    });
-    CHECK(scene.lights[0].intensity.g == 0);
+    CHECK(scene.lights[0].is_hidden);
+    posed.edit([](Scene&) { return SceneUpdate{}; });
+    CHECK(scene.lights[0].is_hidden);
     CHECK(posed.set_time(1.9).is_empty());
     const SceneUpdate update = posed.set_time(2);
     CHECK(update.moved_instances == std::vector<uint32_t>{0, 1, 2});
     CHECK(update.lights_changed);
     CHECK(seen() == std::vector<uint32_t>{2, 5});
-    CHECK(scene.lights[0].intensity.g == 5);
+    CHECK_FALSE(scene.lights[0].is_hidden);
+    CHECK(shown_intensity(scene.lights[0]).g == 5);
     CHECK(scene.instances[1].world_from_local.translation.x == 2);
     const PosedScene::Placements before = posed.placements_at(1);
     CHECK(before.instances[0]);
@@ -444,14 +442,19 @@ TEST_CASE("KHR_animation_pointer shows and hides nodes with all that they hold")
     posed.set_time(0);
     CHECK(seen() == std::vector<uint32_t>{0});
 
-    // Between values there is nothing, so a spline has no meaning, and floats are read as bytes are.
-    PosedScene by_floats(test::read_gltf_text(document("," + sampler(1, 4), channel(1, 2)), messages));
+    // Between values there is nothing, so a spline is refused, and floats are read as bytes are. A node with a matrix
+    // has a visibility, too.
+    PosedScene by_floats(
+        test::read_gltf_text(document("," + sampler(1, 4), channel(1, 2) + "," + channel(2, 0)), messages));
     by_floats.set_time(1.5);
     CHECK(by_floats.scene().instances.at(1).is_hidden);
+    CHECK(by_floats.scene().instances.at(2).is_hidden);
     by_floats.set_time(2);
-    CHECK_FALSE(by_floats.scene().instances.at(1).is_hidden);
+    CHECK(by_floats.scene().instances.at(1).is_hidden);
+    CHECK_FALSE(by_floats.scene().instances.at(2).is_hidden);
     CHECK(messages.left_out().empty());
-    test::read_gltf_text(document("," + sampler(1, 2, R"(,"interpolation":"CUBICSPLINE")"), channel(0, 2)), messages);
+    builder.add("SCALAR", std::vector<float>{0, 0, 0, 0, 1, 0}); // 7
+    test::read_gltf_text(document("," + sampler(1, 7, R"(,"interpolation":"CUBICSPLINE")"), channel(0, 2)), messages);
     CHECK(messages.left_out().size() == 1);
 }
 

@@ -445,6 +445,23 @@ TEST_CASE("an external asset is shown by nodes, with its own materials, textures
     for (const Node& node : nested.nodes) CHECK((node.parent == kNoNode || node.parent < nested.nodes.size()));
 }
 
+TEST_CASE("a node that an animation may show hides an external asset at rest") {
+    const std::filesystem::path at = asset_folder();
+    test::write_text(at / "chair.gltf", chair_asset());
+    Messages messages;
+    const Scene scene = read_assets(
+        test::write_text(
+            at / "room.gltf",
+            room_with_assets(
+                R"({"uri":"chair.gltf","mimeType":"model/gltf+json"})",
+                R"({"externalAsset":0,"extensions":{"KHR_node_visibility":{"visible":false}}}],)"
+                R"("animations":[{"channels":[{"sampler":0,"target":{"path":"pointer","extensions":)"
+                R"({"KHR_animation_pointer":{"pointer":"/nodes/1/extensions/KHR_node_visibility/visible"}}}}]})")),
+        messages);
+    CHECK_FALSE(scene.instances.at(0).is_hidden);
+    CHECK((scene.instances.at(1).is_hidden && scene.lights.at(0).is_hidden));
+}
+
 TEST_CASE("external assets that show themselves, are damaged, missing or in other folders are left out") {
     const std::filesystem::path at = asset_folder();
     const auto shows = [&](const std::string& name, const std::string& other) {

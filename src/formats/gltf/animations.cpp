@@ -228,8 +228,11 @@ AnimationChannel read_keys(const Document& document, Buffers& buffers, const Jso
         throw output.error("the values must be floats, normalized integers for a rotation or weights, or unsigned "
                            "bytes for a visibility");
     }
-    if (channel.part == AnimatedPart::Visibility && channel.interpolation == Interpolation::Linear)
+    if (channel.part == AnimatedPart::Visibility) {
+        if (channel.interpolation == Interpolation::CubicSpline)
+            throw sampler.at("interpolation").error("a visibility has no tangents; expected STEP");
         channel.interpolation = Interpolation::Step;
+    }
     const bool has_weights = channel.part == AnimatedPart::Weights;
     const uint64_t a_key = (channel.interpolation == Interpolation::CubicSpline ? 3 : 1) *
                            (has_weights ? scene.nodes[target.indices[0]].morph_weights.size() : 1);
@@ -269,10 +272,6 @@ bool attenuates_medium(const Target& target, const Scene& scene) {
     return target.numbers == material_numbers("transmission_depth") ||
            target.numbers == material_numbers("transmission_color");
 }
-
-} // namespace
-
-namespace {
 
 /// Returns the nodes whose property at `path` a channel of a playing clip changes.
 std::set<uint32_t> nodes_animated_at(std::string_view path, const Document& document, std::span<const Clip> clips) {

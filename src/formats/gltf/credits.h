@@ -1,7 +1,7 @@
 #pragma once
 
-// Author and licence of a file and of those that it shows, as suggested settings that pictures record: from KHR_xmp_json_ld (dc:creator,
-// dc:rights), else from asset.extras, where Sketchfab writes them.
+// Author and licence of a file and of those that it shows, as suggested settings that pictures record: from
+// KHR_xmp_json_ld (dc:creator, dc:rights), else from asset.extras, where Sketchfab writes them.
 
 #include "base/sink.h"
 #include "formats/gltf/document.h"

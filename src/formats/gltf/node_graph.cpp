@@ -36,13 +36,13 @@ std::variant<NodePose, DoubleTransform> pose_of(const JsonValue& node, Sink& sin
 
 } // namespace
 
-NodeGraph::NodeGraph(const Document& document, uint32_t shown, const std::set<uint32_t>& blinking, Sink& sink,
-                     const std::optional<NodeTransform>& base) {
+NodeGraph::NodeGraph(const Document& document, uint32_t shown, const std::set<uint32_t>& animated_visibility,
+                     Sink& sink, const std::optional<NodeTransform>& base) {
     read_children(document, sink);
     cut_cycles(document, sink);
     const std::vector<uint32_t> roots = scene_roots(document, shown, sink);
     if (base) hold_all(*base);
-    place_nodes(document, blinking, sink);
+    place_nodes(document, animated_visibility, sink);
     for_each_below(roots, [&](uint32_t node) { scene_nodes_.push_back(node); });
 }
 
@@ -102,7 +102,7 @@ void NodeGraph::cut_cycles(const Document& document, Sink& sink) {
     }
 }
 
-void NodeGraph::place_nodes(const Document& document, const std::set<uint32_t>& blinking, Sink& sink) {
+void NodeGraph::place_nodes(const Document& document, const std::set<uint32_t>& animated_visibility, Sink& sink) {
     const std::vector<JsonValue>& nodes = document.table("nodes");
     const std::vector<uint32_t> order = parents_first(nodes_);
     for (uint32_t node = 0; node < nodes.size(); ++node) {
@@ -121,10 +121,9 @@ void NodeGraph::place_nodes(const Document& document, const std::set<uint32_t>& 
             if (const auto own = nodes[node].extension("KHR_node_visibility"))
                 is_visible = own->bool_or("visible", true);
         });
-        if (blinking.contains(node)) nodes_[node].is_visible = std::exchange(is_visible, true);
+        if (animated_visibility.contains(node)) nodes_[node].is_visible = std::exchange(is_visible, true);
         is_hidden_[node] = !is_visible || (parent != kNoNode && is_hidden_[parent]);
     }
-    visible_at_rest_ = visible_nodes(nodes_, order);
     transforms_ = transforms_of(nodes_, order);
     world_from_node_ = world_from_nodes(transforms_, {0, 0, 0});
 }

@@ -119,8 +119,7 @@ private:
                                             .material = part.material,
                                             .world_from_local = world_from_local,
                                             .node = index,
-                                            .node_from_local = m,
-                                            .is_hidden = !nodes_.is_visible_at_rest(index)});
+                                            .node_from_local = m});
             }
         }
         if (scene_.instances.size() > kMaxInstances) {

@@ -1,5 +1,7 @@
 #include "formats/gltf/read_gltf.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/limits.h"
@@ -63,6 +65,14 @@ void choose(const Document& document, Buffers& buffers, const ReadOptions& optio
     }
 }
 
+/// Hides what nodes that are not visible at rest hold, also of assets.
+void hide_at_rest(Scene& scene) {
+    if (std::ranges::all_of(scene.nodes, &Node::is_visible)) return;
+    const std::vector<bool> are_visible = visible_nodes(scene.nodes, parents_first(scene.nodes));
+    for (Instance& instance : scene.instances) instance.is_hidden = instance.is_hidden || !are_visible[instance.node];
+    for (Light& light : scene.lights) light.is_hidden = !are_visible[light.node];
+}
+
 } // namespace
 
 Scene read_asset(const std::filesystem::path& path, std::vector<std::byte> bytes, const FileAccess& access,
@@ -92,6 +102,7 @@ Scene read_asset(const std::filesystem::path& path, std::vector<std::byte> bytes
     loader.load_into(scene, buffers.file_bytes());
     materials.convert_textures(justified_bytes(kFreeImageBytes, buffers.file_bytes()));
     assets.append_to(scene);
+    hide_at_rest(scene);
     return scene;
 }
 

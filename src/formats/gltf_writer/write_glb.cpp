@@ -196,6 +196,10 @@ private:
     }
 
     void add_light(Light light) {
+        if (light.is_hidden) {
+            return sink_.leave_out(fmt::format("{}: it is hidden, and is lost",
+                                               numbered("light", lights_.size(), light.name, light.origin)));
+        }
         JsonMembers object;
         if (is_round_cone(light)) {
             sink_.leave_out(fmt::format("{}: its falloff is lost; it becomes a spot light of its cone",

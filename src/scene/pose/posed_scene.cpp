@@ -119,20 +119,12 @@ PosedScene::PosedScene(Scene rest, bool leaves_vertices)
             materials_.push_back({channel.target, at_rest, at_rest, {}});
         }
     }
-    hide_lights_at_rest();
     drop_shapes_at_rest();
     for (std::size_t i = 0; i < scene_.shapes.size(); ++i) at_rest_.push_back(wanted(i));
     poses_ = on_host_ = at_rest_;
     find_shapes_to_leave();
     if (!is_animated()) return;
     for (const Mesh& mesh : scene_.meshes) bounds_.push_back(bounds_of(mesh));
-}
-
-/// Darkens the lights of nodes that are not visible at rest.
-void PosedScene::hide_lights_at_rest() {
-    for (Light& light : scene_.lights) {
-        if (light.node != kNoNode && !is_shown_[light.node]) light.intensity = {0, 0, 0};
-    }
 }
 
 /// Removes the shapes of meshes that no animation changes, which are no longer needed.
@@ -198,7 +190,6 @@ SceneUpdate PosedScene::edit(const std::function<SceneUpdate(Scene&)>& edit) {
     cameras_ = cameras_at_rest_ = scene_.cameras;
     for (MovingMaterial& material : materials_) material.rest = scene_.materials[material.index];
     if (update.materials_changed) find_shapes_to_leave();
-    hide_lights_at_rest(); // at another time, set_time() follows
     return update;
 }
 
@@ -418,11 +409,12 @@ void PosedScene::update_lights() {
         light.intensity = lights_[i].intensity;
         light.range = lights_[i].range;
         light.cos_inner = lights_[i].cos_inner;
+        light.is_hidden = light.node != kNoNode && !is_shown_[light.node];
         light.cos_outer = min(lights_[i].cos_outer, light.cos_inner - kSharpestEdge);
         if (light.node != kNoNode && node_moves_[light.node]) {
             bool stands = transform_light(world_from_node_[light.node], light);
             light.direction = normalize_safely(light.direction);
-            stands = stands && is_shown_[light.node] && is_oriented(light) &&
+            stands = stands && is_oriented(light) &&
                      is_within_limits(make_translation(light.position), Bounds3{{0, 0, 0}, {0, 0, 0}});
             if (!stands) {
                 light = rest;
@@ -431,7 +423,8 @@ void PosedScene::update_lights() {
         }
         Light& now = scene_.lights[i];
         const bool stays = same_bits(light.position, now.position) && same_bits(light.direction, now.direction) &&
-                           same_bits(light.up, now.up) && light.is_mirrored == now.is_mirrored;
+                           same_bits(light.up, now.up) && light.is_mirrored == now.is_mirrored &&
+                           light.is_hidden == now.is_hidden;
         const bool shines_alike = same_bits(light.intensity, now.intensity) && same_bits(light.range, now.range) &&
                                   same_bits(light.cos_inner, now.cos_inner) &&
                                   same_bits(light.cos_outer, now.cos_outer);

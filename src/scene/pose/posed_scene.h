@@ -53,7 +53,6 @@ public:
     Placements placements_at(double time_s);
 
 private:
-    void hide_lights_at_rest();
     void drop_shapes_at_rest();
     void find_shapes_to_leave();
     void read_channels(double time_s);

@@ -49,7 +49,8 @@ std::string fault_of(const AnimationChannel& channel, const Scene& scene) {
     if (channel.part == AnimatedPart::Weights && scene.nodes[channel.target].morph_weights.empty()) {
         return "its node's mesh has no morph targets, so that its weights cannot be animated";
     }
-    if (places_node(channel.part) && std::holds_alternative<DoubleTransform>(scene.nodes[channel.target].pose)) {
+    if (places_node(channel.part) && channel.part != AnimatedPart::Visibility &&
+        std::holds_alternative<DoubleTransform>(scene.nodes[channel.target].pose)) {
         return "its node has a matrix; expected translation, rotation and scale";
     }
     if (times.empty()) return "it has no key times; expected at least one key";
