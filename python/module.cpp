@@ -370,7 +370,8 @@ NB_MODULE(_core, module) {
     });
     nb::set_leak_warnings(false); // a thread may still render when the interpreter ends
     module.attr("__version__") = version();
-    OidnLibrary::look_below(nb::cast<std::string>(nb::module_::import_("sys").attr("prefix")));
+    const nb::object prefix = nb::module_::import_("os").attr("fsencode")(nb::module_::import_("sys").attr("prefix"));
+    OidnLibrary::look_below(nb::cast<nb::bytes>(prefix).c_str());
     define_result(module);
     define_batch(module);
     module.def(

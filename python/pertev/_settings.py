@@ -79,7 +79,9 @@ def _text(row, value):
         return file_name(value, row["name"])
     if hasattr(value, "__dlpack__"):
         value = on_host(value)
-    if isinstance(value, (bytes, bytearray, complex)) or getattr(getattr(value, "dtype", None), "kind", "") == "c":
+    if hasattr(value, "__next__"):
+        value = list(value)
+    if isinstance(value, (bytes, bytearray, memoryview, complex)) or getattr(getattr(value, "dtype", None), "kind", "") == "c":
         pass # bytes are numbers for iter(), and NumPy's complex ones have a float()
     elif isinstance(value, bool) or type(value).__name__ in BOOLS:
         if row["type"] == "bool":
@@ -104,7 +106,7 @@ def _check_shape(name, value):
     """Raises InputError for rows of numbers, unless the setting may have them."""
     shape = getattr(value, "shape", None)
     if shape is None:
-        lengths = [len(item) for item in value if hasattr(item, "__len__") and not isinstance(item, str)]
+        lengths = [len(item) for item in value if hasattr(item, "__len__") and not isinstance(item, str) and getattr(item, "ndim", 1) > 0]
         shape = (len(value), *lengths[:1]) if len(set(lengths)) < 2 else (len(value), "?")
     if len(shape) > 1 and shape not in MATRICES.get(name, ()):
         expected = " or ".join(map(str, MATRICES.get(name, ()))) or "one row of numbers"
