@@ -340,7 +340,7 @@ const measurements = [...document.querySelectorAll("script.measurement")].map((s
 document.body.append(make("h1", {}, measurements.length === 1 ? measurements[0].title : "Pertev: measurements"));
 if (measurements.length === 1) document.title = measurements[0].title;
 else {
-  document.body.append(make("ol", { class: "contents" }, measurements.map((m, i) => make("li", {}, make("a", { href: `#m${i}` }, m.title), ` \u2014 ${m.device ?? m.processor ?? ""}, ${m.date ?? ""}`))));
+  document.body.append(make("ol", { class: "contents" }, measurements.map((m, i) => make("li", {}, make("a", { href: `#m${i}` }, m.title), ` \u2014 ${[m.device ?? m.processor, m.date?.slice(0, 10)].filter(Boolean).join(", ")}`))));
 }
 measurements.forEach((m, i) => document.body.append(showMeasurement(m, `m${i}`, measurements.length === 1)));
 document.body.dataset.drawn = String(measurements.length);
