@@ -4,7 +4,7 @@
 Needs PyPI's mitsuba 3.9 (its variants llvm_ad_rgb, for which libLLVM must be there, and cuda_ad_rgb) and PERTEV_SCENES
 (docs/scenes.md); a job whose scene is missing is left out. Jobs: grey Sponza under a constant sky, by two roulettes, Bitterli's Cornell
 box to two depths, the Stanford bunny under a constant sky, a corridor with 5,000 small emitters in direct light, Bitterli's
-veach-ajar, and 40 material balls. Both renderers use 64 samples, a box filter of one pixel and their own best sampler (Sobol here, multijitter there).
+veach-ajar, 40 material balls and GlamVelvetSofa. Both renderers use 64 samples, a box filter of one pixel and their own best sampler (Sobol here, multijitter there).
 
 Rates are medians of samples a second, without reading, trees and Mitsuba's compiling. The error is relMSE over the best 98 % of pixels
 (`pertev compare`), at a quarter of the width and height, against the renderer's own picture of thousands of samples; "times sooner" is

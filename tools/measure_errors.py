@@ -107,7 +107,7 @@ def main():
                 print(*rows[-1], sep="\t", flush=True)
     used = [column for column in range(len(COLUMNS)) if any(row[column] is not None for row in rows)]
     if given.output:
-        notes = [kind["about"], *([f"The reference, whose noise errors include: {kind['reference']}."] if "reference" in kind else []), f"Means of {given.seeds} seeds; {kind['line']}."]
+        notes = [kind["about"], *([f"The reference, whose noise errors include: {kind['reference']}."] if "reference" in kind else []), f"Means of {given.seeds} seeds; {' '.join(with_flags(kind['line'].split(), flags))}."]
         device = dict(zip(flags, flags[1:])).get("--device", "cpu")
         tables = [("errors", [COLUMNS[i] for i in used], [[row[i] for i in used] for row in rows])]
         if "across" in kind:

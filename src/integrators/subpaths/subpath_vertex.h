@@ -66,8 +66,8 @@ HD inline void arrive_through_solids(const SubpathScene& scene, const SubpathsVi
 }
 
 /// Russian roulette from a subpath's vertex `vertex` (counted from 1) on: the survival probability is the square root
-/// of the vertex's throughput, by the same rule on both sides. The throughput compensates for it, so the mean is
-/// unbiased; MIS weights ignore it. Returns false if the subpath ends.
+/// of the vertex's throughput, or survival_after_delta(), by the same rule on both sides. The throughput compensates
+/// for it, so the mean is unbiased; MIS weights ignore it. Returns false if the subpath ends.
 HD inline bool survives(const SubpathSettings& settings, SampleKey key, uint32_t group, uint32_t vertex,
                         BsdfSample& sample) {
     if (vertex < settings.roulette_depth) return true;
