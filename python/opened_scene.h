@@ -30,7 +30,7 @@ struct EditedScene {
 
     /// Returns the hash of a scene that was read with `hash` after all edits.
     std::string edited(const std::string& hash) const;
-    /// Makes all edits in a scene. Throws Error(BadInput) for one of a parameter that it has not.
+    /// Applies all edits to a scene. Throws Error(BadInput) if the scene lacks a parameter.
     void edit(Scene& scene) const;
 };
 

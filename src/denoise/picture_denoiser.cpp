@@ -99,7 +99,7 @@ void PictureDenoiser::add(const NoisyFrame& frame, const SceneView& scene, uint3
     ++samples_;
 }
 
-/// The arrays that hold what samples have left; the sums are last.
+/// Returns the arrays that accumulate over samples; the sums are last.
 std::vector<PixelWords> PictureDenoiser::gathered() const {
     std::vector<PixelWords> arrays;
     for (Float4* const array :

@@ -83,7 +83,7 @@ HD inline Bsdf make_unstacked_bsdf(const SceneView& scene, const MaterialParamet
     return make_diffuse(base_color);
 }
 
-/// Makes `bsdf`, which is empty, that of any material, where it is (build_reflection).
+/// Fills an empty `bsdf` in place with the lobes of any material (build_reflection).
 HD_CALL inline void build_any_bsdf(Bsdf& bsdf, const SceneView& scene, const MaterialParameters& material,
                                    const MeshView& mesh, TriangleIndices i, float u, float v, Rgb base_color,
                                    const MaterialAxes& axes) {
@@ -169,7 +169,7 @@ HD_CALL inline void build_any_bsdf(Bsdf& bsdf, const SceneView& scene, const Mat
     }
 }
 
-/// Makes the BSDF of a material.
+/// Returns the BSDF of a material at a point of a triangle.
 template <ShadingVariant kVariant = ShadingVariant::General>
 HD inline Bsdf make_bsdf(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
                          TriangleIndices i, float u, float v, Rgb base_color,

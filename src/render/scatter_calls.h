@@ -34,7 +34,7 @@ HD_CALL inline BsdfSample sample_particle(const Surface& surface, Vec3 wi, float
 
 } // namespace scatter_call
 
-/// Surface::evaluate.
+/// Returns Surface::evaluate() of `wi`, called or inlined by the variant.
 template <ShadingVariant kVariant>
 HD inline BsdfValue evaluate_surface(const Surface& surface, Vec3 wo, Vec3 wi, LobeClasses classes = kAllLobeClasses) {
     if constexpr (has_lobes(kVariant)) return scatter_call::evaluate<kVariant>(surface, wo, wi, classes);

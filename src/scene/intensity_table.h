@@ -40,7 +40,7 @@ struct IntensityTable {
     /// Returns the numbers of cells of the square, each with its own probability of being sampled.
     uint32_t columns() const { return values.width; }
     uint32_t rows() const { return filter == TableFilter::Knots ? values.height - 1 : values.height; }
-    /// Returns the mean of a cell.
+    /// Returns the mean of the table's values over a cell.
     Rgb mean_of_cell(uint32_t column, uint32_t row) const;
     /// Returns the solid angle of a cell, sr; of PictureIrradiance its area, over which its values are integrated.
     double measure_of_cell(uint32_t column, uint32_t row) const;

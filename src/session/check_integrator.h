@@ -32,7 +32,7 @@ void check_media(const RenderSettings& settings);
 std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scene);
 
 /// Throws Error(BadInput) with the reason of why_dark. A note says what whitted leaves out, and a warning says if
-/// nothing in the scene, not even its environment, emits light. Media that the integrator does not know are left out.
+/// nothing in the scene, not even its environment, emits light. Media that the integrator does not support are left out.
 void check_light(const RenderSettings& settings, const Scene& scene, Sink& sink);
 
 } // namespace pertev

@@ -26,7 +26,7 @@ struct FrameTask {
     RestirSettings restir;
 };
 
-/// Counts of a frame.
+/// Rays and invalid samples of a frame.
 struct FrameCounts {
     RayCounts rays;
     uint64_t invalid_samples = 0;

@@ -154,8 +154,8 @@ enum class Recorded : uint8_t {
     Changed,   // the setting's value, if it is not the default
 };
 
-/// The part of a prepared render that another value of a setting changes. One that could be less costs time, and no
-/// picture. Display: only how PNG and JPEG show it.
+/// The part of a prepared render that another value of a setting changes. A part that is larger than needed costs time
+/// and changes no picture. Display: only how PNG and JPEG show it.
 enum class Changes : uint8_t { Scene, Camera, Picture, Display };
 
 /// The place of a file's path in a text of a setting. Such a file counts by its contents, wherever it lies.

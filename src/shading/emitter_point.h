@@ -48,7 +48,7 @@ HD inline EmitterPoint point_of(const LightSample& sample) {
 
 HD inline Vec3 environment_direction(const EmitterPoint& point) { return {float_of(point.index), point.u, point.v}; }
 
-/// Light that arrives at `context` from `point`, which is not in the environment: as find_light.
+/// Finds the light that arrives at `context` from a `point` outside the environment; results are those of find_light().
 template <EmitterVariant kEmitters>
 HD inline bool find_local_light(const LightSetView& view, const EmitterPoint& point, const LightContext& context,
                                 LightSample& sample, float& measure) {

@@ -40,7 +40,7 @@ TEST_CASE("devices are named by number, by all, by UUID or the start of it, and 
     CHECK(parse_devices("cuda:1,cpu", kUuids) == DeviceList{gpu_number(1), kCpu});
 }
 
-TEST_CASE("what names no device, or one device twice, is refused with the whole text") {
+TEST_CASE("a text that names no device, or one device twice, is refused as a whole") {
     for (const char* text : {"",
                              "gpu",
                              "cuda:",

@@ -273,7 +273,7 @@ TEST_CASE("mitsuba: references, aliases and named references") {
         "scene.xml:3: there is no object with the id glas (did you mean \"glass\"?)"));
 }
 
-TEST_CASE("mitsuba: ids of files that look like ours of unnamed objects refer to nothing else") {
+TEST_CASE("mitsuba: an id in a file that looks like one of an unnamed object refers to nothing") {
     CHECK(!mitsuba_left_out("<shape type=\"cube\"><ref id=\"\x01zz\"/></shape>").empty());
     CHECK(!mitsuba_left_out("<shape type=\"cube\"><ref id=\"\x01"
                             "99999\"/></shape>")

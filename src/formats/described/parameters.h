@@ -61,7 +61,7 @@ public:
     const std::optional<ColorMatrix>& color_space() const { return to_rec709_; }
 
     const FileLocation& location() const { return location_; }
-    /// Returns the location of a parameter.
+    /// Returns the file and line of a parameter.
     FileLocation location_of(const Parameter& parameter) const { return {location_.file, parameter.line}; }
     /// Returns what the parameters belong to, for messages: "the shape sphere".
     const std::string& what() const { return what_; }

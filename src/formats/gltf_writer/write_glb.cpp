@@ -56,8 +56,8 @@ float angle_of(float cosine) {
     return near;
 }
 
-/// Returns the number `i` of lengths that are 1 or ever farther from it. A reader that rounds once more than the scene
-/// gives back a unit vector, to the bit, of one of these lengths.
+/// Returns length `i` of a list that starts at 1 and departs from it step by step. A reader that rounds once more than
+/// the scene gives back a unit vector, to the bit, of one of these lengths.
 float length_near_1(int i) { return 1 + static_cast<float>(i % 2 == 0 ? i / 2 : -i / 2) * 0x1p-23f; }
 constexpr int kLengths = 256;
 

@@ -16,7 +16,7 @@
 
 namespace pertev::mitsuba {
 
-/// The mesh of a shape, and where it is.
+/// The mesh of a shape, with its transform.
 struct ReadShape {
     uint32_t mesh;              // index into Parts::meshes
     DoubleTransform world_from; // before ShapeMesh::shape_from_mesh

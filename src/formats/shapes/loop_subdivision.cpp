@@ -44,7 +44,7 @@ public:
         }
     }
 
-    /// Returns the subdivided mesh.
+    /// Returns the mesh after one step, with four triangles for each.
     Mesh subdivided() {
         Mesh finer;
         for (std::size_t i = 0; i < rings_.size(); ++i) finer.positions.push_back(moved(i));

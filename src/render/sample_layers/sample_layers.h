@@ -16,7 +16,7 @@
 
 namespace pertev {
 
-/// Layers as bits.
+/// Bits of the layers of samples: uv, mattes, counts and variance.
 enum SampleLayerBits : uint32_t {
     kLayerUv = 1,
     kLayerObjects = 2,

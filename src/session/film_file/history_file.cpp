@@ -61,7 +61,8 @@ KeptFrame HistoryFile::read_generation(const std::string& file) const {
     for (const gltf::JsonValue& size : root.at("arrays").elements()) {
         if (sizes.size() == kMostArrays) throw size.error("too many arrays");
         sizes.push_back(size.to_unsigned());
-        if (sizes.back() % kStride != 0 || sizes.back() > UINT64_C(1) << 48) throw size.error("no size of an array");
+        if (sizes.back() % kStride != 0 || sizes.back() > UINT64_C(1) << 48)
+            throw size.error("an array cannot have this size");
         fewest += BlockFileReader::fewest_bytes(sizes.back(), kStride);
         all += sizes.back();
     }

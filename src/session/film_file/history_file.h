@@ -17,7 +17,7 @@ namespace pertev {
 
 inline constexpr BlockFileKind kHistoryFile = {"\x89PVH\r\n\x1a\n", 1, "history"};
 
-/// A frame of a sequence, and what it leaves; the camera is that of the frame, and not in the file.
+/// A frame of a sequence and its history. The camera is the frame's, which the file does not hold.
 struct KeptFrame {
     uint32_t frame = 0;
     FrameHistory history;

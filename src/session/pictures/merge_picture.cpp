@@ -43,7 +43,7 @@ std::string warning_of(std::span<const CountedRows> rows) {
     return text;
 }
 
-/// Adds which rows have how many samples to what files say.
+/// Adds the samples of each range of rows to the metadata.
 void record_rows(std::span<const CountedRows> rows, uint32_t least, ExrMetadata& origin) {
     std::vector<std::string> counts;
     for (const auto& [first, end, samples] : rows) counts.push_back(fmt::format(R"("{}:{}":{})", first, end, samples));

@@ -123,7 +123,7 @@ void report_light_choice(const PictureOptions& options, const RenderSettings& se
     if (settings.path.light_choice != LightSelection::Tree) return;
     const bool of_frames = options.real_time || settings.is_denoised();
     const bool has_code = !has_media(*prepared.scene) || has_tree_in_media(settings, of_frames);
-    const char* const why = prepared.motions != nullptr                ? "the tree is that of lights at rest"
+    const char* const why = prepared.motions != nullptr                ? "the tree holds lights at rest"
                             : !has_code                                ? "frames and layers of media have no tree"
                             : settings.irradiance                      ? "a light meter samples lights by power"
                             : prepared.lights.tree->light_count() == 0 ? "no light has a position"
