@@ -120,6 +120,10 @@ Differences differences(Image a, Image b, uint32_t blocks, Sink& sink) {
 nb::dict compare(nb::handle picture, nb::handle reference, uint32_t blocks) {
     if (blocks == 0) throw Error(ErrorCode::BadInput, "blocks", "0", "expected at least 1");
     Image a = compared(picture, "picture"), b = compared(reference, "reference");
+    if (a.width != b.width || a.height != b.height) {
+        throw Error(ErrorCode::BadInput, "reference", fmt::format("{}x{}", b.width, b.height),
+                    fmt::format("expected the picture's size, {}x{}", a.width, a.height));
+    }
     const Differences made =
         result_of([&](PythonSink& sink) { return differences(std::move(a), std::move(b), blocks, sink); });
     nb::dict result;

@@ -49,9 +49,6 @@ def compare(picture, reference, *, blocks=1):
     """
     a, b = (read(one) if isinstance(one, (str, os.PathLike)) else _array(one, name)
             for one, name in ((picture, "picture"), (reference, "reference")))
-    sizes = [tuple(getattr(one, "shape", ()))[:2] for one in (a, b)]
-    if all(len(size) == 2 and all(size) for size in sizes) and a.ndim in (2, 3) and b.ndim in (2, 3) and sizes[0] != sizes[1]:  # the program names what is no picture
-        raise input_error("reference", f"the sizes (height, width) are {sizes[0]} and {sizes[1]}; expected one")
     if not 1 <= (blocks := number_of(blocks, "blocks", whole=True)) < 2**32:
         raise input_error("blocks", "expected at least 1", str(blocks))
     return _core.compare(a, b, blocks)
