@@ -9,6 +9,8 @@ import pathlib
 import struct
 import sys
 
+from make_material_balls import principled, two_sided
+
 EYE, TARGET, FOV, SKY = (1.3, 1.1, 2.6), (0, 0.35, -0.1), 32, 0.5
 COUNTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
 
@@ -49,17 +51,12 @@ def row(values):
     return ", ".join(map(str, values))
 
 
-def principled(base, **numbers):
-    members = "".join(f'<float name="{name}" value="{value}"/>' for name, value in numbers.items())
-    return f'<bsdf type="principled"><rgb name="base_color" value="{row(base)}"/>{members}</bsdf>'
-
-
 def fabric(material, picture):
     """The nearest of the model's fabric: its sheen's colour goes to the base, by which Mitsuba tints."""
     sheen = material["extensions"]["KHR_materials_sheen"]["sheenColorFactor"]
     texture = material["normalTexture"]["extensions"]["KHR_texture_transform"]
     base = [0.04 * part / max(sheen) for part in sheen]
-    inner = principled(base, roughness=material["pbrMetallicRoughness"]["roughnessFactor"], sheen=1, sheen_tint=1)
+    inner = principled(row(base), roughness=material["pbrMetallicRoughness"]["roughnessFactor"], sheen=1, sheen_tint=1)
     return (f'<bsdf type="normalmap"><texture type="bitmap" name="normalmap"><boolean name="raw" value="true"/>'
             f'<string name="filename" value="{picture}"/><transform name="to_uv"><scale value="{texture["scale"][0]}"/></transform></texture>{inner}</bsdf>')
 
@@ -81,8 +78,8 @@ def write(source, path):
         obj = folder / f"{path.stem}-{mesh['name']}.obj"
         write_obj(model, primitive, obj)
         bsdf = (fabric(material, picture) if "extensions" in material else
-                principled(numbers["baseColorFactor"][:3], roughness=numbers["roughnessFactor"], metallic=numbers.get("metallicFactor", 1)))
-        shapes.append(f'<shape type="obj"><string name="filename" value="{obj.name}"/><bsdf type="twosided">{bsdf}</bsdf></shape>')
+                principled(row(numbers["baseColorFactor"][:3]), roughness=numbers["roughnessFactor"], metallic=numbers.get("metallicFactor", 1)))
+        shapes.append(f'<shape type="obj"><string name="filename" value="{obj.name}"/>{two_sided(bsdf)}</shape>')
     light = next(node for node in model.json["nodes"] if "extensions" in node)
     intensity = model.json["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"]
     path.write_text(f"""<scene version="3.0.0">
