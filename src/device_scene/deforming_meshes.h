@@ -36,7 +36,7 @@ public:
     void keep_positions();
     const MeshView* before() const { return before_.data(); }
 
-    /// Meshes whose vertices are not on the host and that have their own tree.
+    /// Meshes whose vertices are not on the host and that have a BLAS.
     std::vector<DeformedMesh> deformed(const PlacedScene& prepared, const std::vector<MeshView>& meshes) const;
 
 private:

@@ -1,7 +1,7 @@
 #pragma once
 
-// Decides, once for every structure, which meshes are baked into world space and which keep their own tree, and makes
-// the triangles of both kinds for builders. It also sets the origin of that world near the scene, because floats are
+// Decides, once for every structure, which meshes are baked into world space and which get a BLAS, and makes the
+// triangles of both kinds for builders. It also sets the origin of that world near the scene, because floats are
 // precise only near 0.
 
 #include <cstdint>
@@ -19,7 +19,7 @@ inline constexpr uint32_t kBakedMesh = 0xffffffffu;
 
 struct MeshPlacement {
     std::vector<bool> is_baked;         // [instance]
-    std::vector<uint32_t> blas_of_mesh; // index of the mesh's own tree, or kBakedMesh if no instance needs one
+    std::vector<uint32_t> blas_of_mesh; // index of the mesh's BLAS, or kBakedMesh if no instance needs one
     uint32_t mesh_tree_count = 0;
     uint64_t copies = 0, copied_triangles = 0; // baked although their mesh is used more than once
     Vec3 centre;                               // origin of the world in which they are placed, in the scene's
@@ -32,7 +32,7 @@ Vec3 world_centre(const Scene& scene);
 
 /// Places the meshes. An instance is baked if its mesh is used once and it may not move (scene/animation.h, `apart`),
 /// or, moving or not, if its transform's condition number is over 2^12, because such a skewed local space would enlarge
-/// the boxes of a top level more than the triangles cost memory. Hidden instances are not baked. Throws
+/// the boxes of a TLAS more than the triangles cost memory. Hidden instances are not baked. Throws
 /// Error(OverLimit) that names the instance with which such copies exceed a multiple of the scene's own triangles.
 /// `centre` is the origin of the world in which they are placed, and `apart` says of each instance whether a caller may
 /// move it; empty: of none.
@@ -48,7 +48,7 @@ std::vector<BvhTriangle> mesh_triangles(const Mesh& mesh, Sink& sink = nobody())
 /// A scene's triangles for builders.
 struct SceneTriangles {
     std::vector<BvhTriangle> baked;
-    std::vector<std::vector<BvhTriangle>> meshes; // [mesh with its own tree]
+    std::vector<std::vector<BvhTriangle>> meshes; // [BLAS]
 
     SceneTriangles() = default;
     SceneTriangles(const Scene& scene, const MeshPlacement& placement, Sink& sink);
@@ -58,7 +58,7 @@ struct SceneTriangles {
     std::size_t parts() const { return 1 + meshes.size(); }
 };
 
-/// Contents of the top level. `bounds` are those of the mesh trees; `motions` are those of instances while a shutter
+/// Contents of the TLAS. `bounds` are those of the BLASes; `motions` are those of instances while a shutter
 /// is open, or null.
 std::vector<PlacedBvh> placed_trees(const Scene& scene, const MeshPlacement& placement, std::span<const Bounds3> bounds,
                                     const std::shared_ptr<const MotionKeys>& motions = nullptr);

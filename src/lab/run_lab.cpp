@@ -26,10 +26,9 @@ namespace {
 /// compared with it on all rays.
 constexpr Combination kReference = {.structure = StructureKind::Binned, .traversal = TraversalKind::WhileWhile};
 
-/// Builds the top level over instances that have their own tree, in the file's coordinates, which the ray sets use
-/// too.
+/// Builds the TLAS over instances that have a BLAS, in the file's coordinates, which the ray sets use too.
 Tlas tlas_over(const Scene& scene, const BinaryTrees& trees) {
-    return build_tlas(placed_trees(scene, place_meshes(scene), trees.mesh_bounds()));
+    return build_tlas(placed_trees(scene, place_meshes(scene), trees.blas_bounds()));
 }
 
 class Lab {

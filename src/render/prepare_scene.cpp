@@ -67,7 +67,7 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, S
         prepared.trees.add(taken, std::move(bvh), list.size());
     }
     prepared.blas_of_mesh = placement.blas_of_mesh;
-    prepared.placed = placed_trees(scene, placement, prepared.trees.mesh_bounds(), options.motions);
+    prepared.placed = placed_trees(scene, placement, prepared.trees.blas_bounds(), options.motions);
     prepared.motions = options.motions;
     prepared.tlas = build_tlas(prepared.placed);
     prepared.triangles = triangles.count();

@@ -79,7 +79,7 @@ PreparedScene update_scene(const PreparedScene& before, const Scene& scene, cons
     const std::vector<PartChange> changes = changes_of(scene, placement, update);
     const SceneTriangles triangles = changed_triangles(scene, placement, changes);
     after.trees = update_binary_trees(before.trees, before.structures->builder(), changes, triangles);
-    after.placed = placed_trees(scene, placement, after.trees.mesh_bounds(), motions);
+    after.placed = placed_trees(scene, placement, after.trees.blas_bounds(), motions);
     after.motions = std::move(motions);
     after.tlas = build_tlas(after.placed);
     after.structures = before.structures->updated(after.trees, after.tlas, changes, triangles);

@@ -13,7 +13,7 @@ namespace pertev {
 
 /// Updates `before` to `scene`, which is valid, already contains the changes and outlives the result. It may be the
 /// same object that `before` was made of, changed in place. Trees are handled as follows:
-///   moved instances     get a new top level, and keep the meshes' trees. A baked one (MeshPlacement) counts as a
+///   moved instances     get a new TLAS, and keep the BLASes. A baked one (MeshPlacement) counts as a
 ///   deformed
 ///                       mesh of the tree over all baked ones; an instance that moves often should be marked as movable
 ///                       (scene/animation.h), so that it is not baked

@@ -72,7 +72,7 @@ private:
         for (const RayKind kind : kValuesOf<RayKind>) built.insert(structures.get(tracers[kind]));
         for (const auto& structure : built) structures_.emplace_back(queue_, structure);
     }
-    /// Allocates the device's trees of meshes whose vertices move, and the top levels over them.
+    /// Allocates the device's BLASes of meshes whose vertices move, and the TLASes over them.
     void take_deforming_trees(const PreparedScene& scene, const TracerChoice& tracers) {
         std::set<TreeLayout> layouts;
         for (const RayKind kind : kValuesOf<RayKind>) layouts.insert(layout_of(tracers[kind]));
@@ -81,7 +81,7 @@ private:
         for (const TreeLayout layout : layouts) {
             const std::vector<CompressedBvhView> views(scene.trees.parts.size());
             SceneTrees<CompressedBvhView> top = {};
-            upload_top_level(queue_, top_levels_.emplace_back(), views, scene.tlas, top);
+            upload_tlas(queue_, tlases_.emplace_back(), views, scene.tlas, top);
             if (layout != TreeLayout::Compressed) continue; // the host's other trees are not counted
             for (std::size_t i = 0; i < scene.poses.size(); ++i) {
                 const uint32_t mesh = scene.scene->shapes[i].mesh;
@@ -96,7 +96,7 @@ private:
     std::unique_ptr<Integrator> integrator_;
     std::vector<StructureOnDevice> structures_;
     std::vector<DeformingCompressed> trees_;
-    std::vector<Buffer<std::byte>> top_levels_;
+    std::vector<Buffer<std::byte>> tlases_;
 };
 
 } // namespace

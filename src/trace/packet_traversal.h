@@ -150,7 +150,7 @@ public:
                 RayPacket local;
                 for_each(mask,
                          [&](std::size_t k) { local[k] = ray_in_instance(record, rays_[k], visitors_[k].accept); });
-                traverse_mesh(scene_.meshes[record.blas], local, record.instance, mask);
+                traverse_mesh(scene_.blases[record.blas], local, record.instance, mask);
             });
     }
 

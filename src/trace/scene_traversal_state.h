@@ -82,7 +82,7 @@ private:
         }
         const InstanceRecord record = load_aligned(scene.instances + (leaf & ~kLeafBit));
         instance = record.instance;
-        tree = scene.meshes[record.blas];
+        tree = scene.blases[record.blas];
         local = ray_in_instance(record, ray, visitor.accept);
         Traversal::start(tree, local, visitor, state);
     }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Everything that rays can hit: a tree over the triangles that are baked into world space, and a tree over instances
-// of meshes with their own trees. Scene preparation decides between the two, in the same way for every structure.
+// Everything that rays can hit: a tree over the triangles that are baked into world space, and a TLAS over the other
+// instances, each of which names a BLAS. Scene preparation decides between the two, the same for every structure.
 
 #include <cstdint>
 
@@ -21,15 +21,15 @@ template <class Tree>
 struct SceneTrees {
     Tree baked; // world space; triangles carry their instance
     const BvhNode* tlas_nodes = nullptr;
-    const InstanceRecord* instances = nullptr; // indexed by leaf links of the top level
-    const Tree* meshes = nullptr;              // [InstanceRecord::blas], local space
+    const InstanceRecord* instances = nullptr; // indexed by leaf links of the TLAS
+    const Tree* blases = nullptr;              // [InstanceRecord::blas], local space
     uint32_t tlas_root = kNoLink;
     float tlas_reach = 0, tlas_growth = 0; // values of Tlas
 };
 using SceneBvhView = SceneTrees<BvhView>;
 using HostTrees = SceneTrees<WideBvhView<8>>; // the CPU's default structure (trace/wide/traverse_wide.h)
 
-/// A scene whose triangles are all baked. Its traversal has no top level, which saves registers in a kernel.
+/// A scene whose triangles are all baked. Its traversal has no TLAS, which saves registers in a kernel.
 template <class Tree>
 struct SingleTree {
     Tree baked;

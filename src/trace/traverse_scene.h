@@ -1,6 +1,6 @@
 #pragma once
 
-// Traversal of a whole scene: the baked tree first, then each instance that the top level leads to. Closest-hit and
+// Traversal of a whole scene: the baked tree first, then each instance that the TLAS leads to. Closest-hit and
 // any-hit searches differ only in the visitor:
 //   float limit() const                              boxes with a greater entry parameter are skipped
 //   bool visit(instance, primitive, TriangleHit)     receives each candidate; returns true to end the traversal
@@ -51,7 +51,7 @@ HD inline void traverse_scene(const SceneTrees<typename Traversal::Tree>& scene,
         if (leaf == kNoLink) return;
         const InstanceRecord record = load_aligned(scene.instances + (leaf & ~kLeafBit));
         instance = record.instance;
-        tree = scene.meshes[record.blas];
+        tree = scene.blases[record.blas];
         local = ray_in_instance(record, ray, visitor.accept);
     }
 }

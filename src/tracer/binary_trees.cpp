@@ -11,7 +11,7 @@ uint64_t BinaryTrees::triangle_count() const {
     return std::accumulate(triangles.begin(), triangles.end(), uint64_t(0));
 }
 
-std::vector<Bounds3> BinaryTrees::mesh_bounds() const {
+std::vector<Bounds3> BinaryTrees::blas_bounds() const {
     std::vector<Bounds3> bounds;
     for (std::size_t part = 1; part < parts.size(); ++part) bounds.push_back(parts[part]->bounds);
     return bounds;

@@ -13,7 +13,7 @@
 namespace pertev {
 
 struct BinaryTrees {
-    // parts[0] is the tree over the baked instances. The rest are local-space trees of the meshes that are not baked.
+    // parts[0] is the tree over the baked instances. The rest are BLASes of the meshes that are not baked.
     std::vector<std::shared_ptr<const Bvh>> parts;
     double build_s = 0;
     std::vector<BvhBuilder> builders;   // [part] the builder that made its tree
@@ -28,8 +28,8 @@ struct BinaryTrees {
     }
     const Bvh& baked() const { return *parts.front(); }
     uint64_t triangle_count() const;
-    /// Bounds of the trees of meshes that are not baked.
-    std::vector<Bounds3> mesh_bounds() const;
+    /// Bounds of the BLASes.
+    std::vector<Bounds3> blas_bounds() const;
 };
 
 /// Builds all parts. `sink` may end it. Throws Error(OverLimit), std::bad_alloc.

@@ -110,7 +110,7 @@ void BuiltStructure::take(const Tlas& tlas, const std::vector<std::shared_ptr<co
     list_bytes(std::as_bytes(std::span(*meshes)));
     list_bytes(std::as_bytes(std::span(top->nodes)));
     list_bytes(std::as_bytes(std::span(top->instances)));
-    scene.meshes = meshes->data();
+    scene.blases = meshes->data();
     scene.tlas_nodes = top->nodes.data();
     scene.instances = top->instances.data();
     scene.tlas_root = top->root;

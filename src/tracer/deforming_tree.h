@@ -1,6 +1,6 @@
 #pragma once
 
-// Trees of meshes whose vertices move on the device. Each is built once, then refitted, and rebuilt once refits have
+// BLASes of meshes whose vertices move on the device. Each is built once, then refitted, and rebuilt once refits have
 // raised its SAH cost to kMaxRefitCost times that of the build. Compressed nodes are built on the device
 // (hploc/device_builder.h); the wide nodes of the CPU are built by the host's builders on all threads.
 

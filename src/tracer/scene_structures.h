@@ -16,7 +16,7 @@
 
 namespace pertev {
 
-/// Builds the top level over instances, with bounds in place of those in `placed` for the meshes that `bounds` lists.
+/// Builds the TLAS over instances, with bounds in place of those in `placed` for the meshes that `bounds` lists.
 /// Throws Error(OverLimit) that names an instance farther out than kMaxCoordinate.
 Tlas tlas_over(std::span<const PlacedBvh> placed, const std::map<uint32_t, Bounds3>& bounds_of_trees);
 
@@ -32,7 +32,7 @@ public:
                                              const SceneTriangles& triangles);
 
     /// Returns the scene with new vertices for some meshes. It works like updated(), on the host, for layouts whose
-    /// trees are not kept on the device (can_deform). `placed` lists what the top level contains.
+    /// trees are not kept on the device (can_deform). `placed` lists what the TLAS contains.
     std::shared_ptr<SceneStructures> fitted(Queue& queue, std::span<const DeformedMesh> meshes,
                                             std::span<const PlacedBvh> placed);
 

@@ -32,8 +32,8 @@ public:
     /// Returns whether the trees of meshes whose vertices move are refitted on the device, for the layouts of all ray
     /// kinds.
     bool can_deform() const;
-    /// Refits the trees of these meshes and rebuilds the top level; can_deform() must hold. `placed` lists what the
-    /// top level contains, with the bounds of the other trees. Throws Error(OverLimit) as tlas_over,
+    /// Refits the trees of these meshes and rebuilds the TLAS; can_deform() must hold. `placed` lists what the
+    /// TLAS contains, with the bounds of the other trees. Throws Error(OverLimit) as tlas_over,
     /// Error(OutOfMemory, DeviceFault).
     void deform(std::span<const DeformedMesh> meshes, std::span<const PlacedBvh> placed);
 

@@ -33,14 +33,14 @@ SceneTrees<View> StructureOnDevice::moved_scene(SceneTrees<View> scene, const Bu
         // Both structures are alive, so equal addresses mean the same array.
         if (before != nullptr && before->offset_of(bytes.data()) == array.offset) continue;
         std::vector<View> meshes;
-        if (static_cast<const void*>(bytes.data()) == static_cast<const void*>(scene.meshes)) {
-            meshes.assign(scene.meshes, scene.meshes + bytes.size() / sizeof(View));
+        if (static_cast<const void*>(bytes.data()) == static_cast<const void*>(scene.blases)) {
+            meshes.assign(scene.blases, scene.blases + bytes.size() / sizeof(View));
             for (View& view : meshes) move(view);
             bytes = std::as_bytes(std::span(meshes));
         }
         if (!bytes.empty()) upload_array(queue_, memory_.data() + array.offset, bytes, meshes.empty());
     }
-    scene.meshes = moved(scene.meshes);
+    scene.blases = moved(scene.blases);
     scene.tlas_nodes = moved(scene.tlas_nodes);
     scene.instances = moved(scene.instances);
     return scene;
@@ -106,7 +106,7 @@ std::vector<Bounds3> StructureOnDevice::deform(std::span<const DeformedMesh> mes
 
 void StructureOnDevice::place(std::span<const DeformedMesh> meshes, const Tlas& tlas) {
     const auto place_in = [&]<class View>(SceneTrees<View>& scene) {
-        const View* const own = std::get<SceneTrees<View>>(structure_->trees()).meshes;
+        const View* const own = std::get<SceneTrees<View>>(structure_->trees()).blases;
         std::vector<View> views(own, own + structure_->mesh_count());
         if (is_copied_) {
             for (View& view : views) move(view);
@@ -118,7 +118,7 @@ void StructureOnDevice::place(std::span<const DeformedMesh> meshes, const Tlas& 
                 },
                 deforming_.at(mesh.mesh).tree);
         }
-        upload_top_level(queue_, placed_, views, tlas, scene);
+        upload_tlas(queue_, placed_, views, tlas, scene);
     };
     std::visit(place_in, trees_);
 }

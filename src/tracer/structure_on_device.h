@@ -16,16 +16,16 @@
 
 namespace pertev {
 
-/// Uploads the top level of `scene`: the views of its meshes, and a tree over its instances. `memory` is reused if it
+/// Uploads the TLAS of `scene`: the views of its BLASes, and a tree over its instances. `memory` is reused if it
 /// is large enough. Throws Error(OutOfMemory).
 template <class View>
-void upload_top_level(Queue& queue, Buffer<std::byte>& memory, const std::vector<View>& views, const Tlas& tlas,
+void upload_tlas(Queue& queue, Buffer<std::byte>& memory, const std::vector<View>& views, const Tlas& tlas,
                       SceneTrees<View>& scene) {
     PartArrays arrays;
-    arrays.add(views, scene.meshes);
+    arrays.add(views, scene.blases);
     arrays.add(tlas.nodes, scene.tlas_nodes);
     arrays.add(tlas.instances, scene.instances);
-    arrays.upload(queue, memory, "top level of what moves");
+    arrays.upload(queue, memory, "TLAS of what moves");
     scene.tlas_root = tlas.root;
     scene.tlas_reach = tlas.reach;
     scene.tlas_growth = tlas.growth;
@@ -50,7 +50,7 @@ public:
     /// was already seen is skipped. The layout must satisfy can_deform. Returns the bounds of each mesh. Throws
     /// Error(OutOfMemory, DeviceFault).
     std::vector<Bounds3> deform(std::span<const DeformedMesh> meshes);
-    /// Uses, after deform(), the trees of exactly these meshes, and this top level over all instances, in place of the
+    /// Uses, after deform(), the trees of exactly these meshes, and this TLAS over all instances, in place of the
     /// structure's own until the next update with another structure.
     void place(std::span<const DeformedMesh> meshes, const Tlas& tlas);
 
@@ -78,7 +78,7 @@ private:
         Bounds3 bounds;
     };
     std::map<uint32_t, Deforming> deforming_; // by mesh
-    Buffer<std::byte> placed_;                // views of the trees, and the top level
+    Buffer<std::byte> placed_;                // views of the trees, and the TLAS
 };
 
 } // namespace pertev

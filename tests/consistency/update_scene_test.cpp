@@ -26,7 +26,7 @@ void twist(Mesh& mesh) {
     for (Vec3& p : mesh.positions) p = {p.x + 0.3f * p.y * p.y, 1.1f * p.y, p.z - 0.2f * p.x};
 }
 
-/// One change of the mixed scene. Two spheres share mesh 0, which has its own tree; mesh 3 is baked.
+/// One change of the mixed scene. Two spheres share mesh 0, which has a BLAS; mesh 3 is baked.
 struct Step {
     const char* what;
     void (*change)(Scene&);
@@ -179,7 +179,7 @@ TEST_CASE("a change rebuilds only the trees of changed meshes") {
         SceneUpdate update;
         update.moved_instances = {1};
         CHECK(same(update_scene(before, scene, update, messages)) == all);
-        update.deformed_meshes = {0}; // the mesh's tree is the first or the second after the baked one
+        update.deformed_meshes = {0}; // the BLAS is the first or the second tree after the baked one
         std::vector<bool> found = same(update_scene(before, scene, update, messages));
         CHECK(std::ranges::count(found, false) == 1);
         CHECK(found[0]);
@@ -190,7 +190,7 @@ TEST_CASE("a change rebuilds only the trees of changed meshes") {
         // Data derived from the trees is shared, too.
         const auto nodes_of = [&](const PreparedScene& of) {
             const auto built = of.structures->get(options.tracers->bounce);
-            return std::get<HostTrees>(built->trees()).meshes[0].nodes;
+            return std::get<HostTrees>(built->trees()).blases[0].nodes;
         };
         const PreparedScene after = update_scene(before, scene, update, messages);
         CHECK(nodes_of(after) == nodes_of(before));

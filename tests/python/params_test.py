@@ -280,7 +280,7 @@ class Params(unittest.TestCase):
             hashes.append(pertev.render(scene, size=(24, 16), spp=2).hash)
         self.assertEqual(hashes[0], hashes[1])
 
-    def test_a_movable_instance_rebuilds_no_tree_but_the_top_level(self):
+    def test_a_movable_instance_rebuilds_no_tree_but_the_tlas(self):
         seconds = {}
         robot = {"vertices": [[0, 3, 0], [4, 3, 0], [0, 3, 4]], "faces": [[0, 1, 2]]}
         for movable in ((), ["robot"]):

@@ -13,7 +13,7 @@
 namespace pertev {
 
 // A link names the next node of a traversal: an inner node's index; kLeafBit | index of a leaf's first triangle (in a
-// top-level tree: kLeafBit | position of the instance's record); or kNoLink for nothing, which counts as a leaf.
+// TLAS: kLeafBit | position of the instance's record); or kNoLink for nothing, which counts as a leaf.
 inline constexpr uint32_t kLeafBit = 0x80000000u;
 inline constexpr uint32_t kNoLink = 0xffffffffu;
 inline constexpr uint32_t kMaxBvhTriangles = kLeafBit - 1;
@@ -25,7 +25,7 @@ struct alignas(16) BvhTriangle {
     Vec3 a;
     uint32_t primitive = 0; // index within its mesh
     Vec3 b;
-    uint32_t instance = 0; // scene order, in a baked tree; unused in a mesh's own tree
+    uint32_t instance = 0; // scene order, in a baked tree; unused in a BLAS
     Vec3 c;
     uint32_t flags = 0;
 };

@@ -1,7 +1,7 @@
 #pragma once
 
-// The top level (TLAS): a tree over instances. Its leaves name instance records, each a mesh's own tree and the
-// transform into its space.
+// The top-level structure (TLAS): a tree over instances. Its leaves name instance records, each a BLAS (the tree of one
+// mesh in its own space) and the transform into that space.
 
 #include <cstdint>
 #include <memory>
@@ -18,7 +18,7 @@ inline constexpr int kMaxTlasDepth = 32; // inner nodes on any path; 2^30 instan
 
 struct alignas(16) InstanceRecord {
     Transform local_from_world;
-    uint32_t blas = 0;           // index into SceneBvhView::meshes
+    uint32_t blas = 0;           // index into SceneBvhView::blases
     uint32_t instance = 0;       // scene order
     uint32_t motion = kNoMotion; // index of its motion while the shutter is open, which then gives local_from_world
     uint32_t unused = 0;
@@ -28,7 +28,7 @@ static_assert(sizeof(InstanceRecord) == 64);
 /// An instance as the scene gives it.
 struct PlacedBvh {
     Transform world_from_local;
-    Bounds3 local_bounds; // bounds of the mesh's tree
+    Bounds3 local_bounds; // bounds of the BLAS
     uint32_t blas = 0;
     uint32_t instance = 0;
     std::shared_ptr<const MotionKeys> motions; // motions while the shutter is open; null if it stands still

@@ -98,7 +98,7 @@ struct BinTriangles {
     }
 
     /// Triangle in camera space with its error bound (render/raster/screen_bounds.h): in world space 2^-18 (|o| + |p|),
-    /// and for a ray in an instance's space with condition K, 2 K times that, as for the top level's boxes
+    /// and for a ray in an instance's space with condition K, 2 K times that, as for the TLAS's boxes
     /// (accel/bvh/tlas.h).
     HD static PinholeTriangle see(const Pinhole& camera, const SceneView& scene, const BvhTriangle& triangle) {
         PinholeTriangle seen;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Instances that a caller wants to move often. Each keeps a tree of its own, also if its mesh is used once, so that
-// moving it rebuilds only the top level.
+// Instances that a caller wants to move often. Each keeps a BLAS, also if its mesh is used once, so that
+// moving it rebuilds only the TLAS.
 
 #include <span>
 #include <string>
