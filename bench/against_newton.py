@@ -132,7 +132,7 @@ def main():
                    ("order", "Newton's render order", None)]
         notes = [f"Newton {newton.__version__}, Warp {wp.__version__}; batches of {pictures} pictures of {SIZE}x{SIZE} of grey Sponza, medians of {args.runs} "
                  f"runs. Newton's light comes from one direction, Pertev's from a constant sky; {100 * seen:.0f} % of Newton's pixels hit."]
-        write_measurement(args.output, args.pertev.resolve(), "Beside Newton's camera sensor", columns, rows, args.device, os.cpu_count(), notes, "batches")
+        write_measurement(args.output, args.pertev.resolve(), "Against Newton's camera sensor", columns, rows, args.device, os.cpu_count(), notes, "batches")
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ sys.path[:0] = [str(ROOT / "tests/images"), str(ROOT / "tests/support"), str(ROO
 import make_corridor  # noqa: E402
 import make_material_balls  # noqa: E402
 import make_velvet_sofa  # noqa: E402
-from measurement import write_measurement  # noqa: E402
+from measurement import machine, write_measurement  # noqa: E402
 from mitsuba_to_gltf import convert  # noqa: E402
 from reference_job import last_event  # noqa: E402
 
@@ -244,4 +244,5 @@ def main(description, make_peer, devices):
     if arguments.output:
         notes = [f"{peer.what()}; {arguments.samples} samples, box filter; medians of {arguments.runs} runs in turns; references of "
                  f"{arguments.reference} samples.", *(["Shading of both held to eight lanes of AVX2 on a processor with AVX-512."] if arguments.lanes else [])]
-        write_measurement(arguments.output, arguments.pertev, f"Against {peer.name}", columns_of(peer.name), rows, arguments.device, arguments.threads, notes)
+        title = f"Against {peer.name}, {machine(arguments.device)}"
+        write_measurement(arguments.output, arguments.pertev, title, columns_of(peer.name), rows, arguments.device, arguments.threads, notes)

@@ -131,6 +131,14 @@ def unknown_commits(files):
     return [f"{name}: there is no commit {commit}" for name, commit in named if commit not in known]
 
 
+def equal_titles(files):
+    """Messages about titles that two measurements have, because the report page's contents could not tell them apart."""
+    first = {}
+    for name, measured in files.items():
+        if first.setdefault(measured["title"], name) != name:
+            yield f"{name}: {first[measured['title']]} has the same title"
+
+
 def pick(table, options):
     """Indices of the columns and the rows that the options select, and the number of digits, or None."""
     keys = [column["key"] for column in table["columns"]]
@@ -189,7 +197,7 @@ def render(path, measured, name, options, up="../"):
 def figures(rows, read):
     """The `table` of bench/figures.json. In its texts {KEY} stands for a value of the row whose first cell is `row`, and {KEY / OTHER} for a
     ratio of two; without `row` a value is the geometric mean of the column, or of several as in {KEY+OTHER}."""
-    lines = ["| what | Pertev | beside | ratio | data |", "|---|---:|---:|---:|---|"]
+    lines = ["| what | Pertev | other program | ratio | data |", "|---|---:|---:|---:|---|"]
     for one in rows:
         table = next(t for t in read(one["file"])["tables"] if t["name"] == one["table"])
         keys = [column["key"] for column in table["columns"]]
@@ -234,6 +242,7 @@ def self_test():
             assert key == "driver" or value is not None or not faults_of("x", {**good, key: value, "unknown": {key: "Why."}})
     assert faults_of("x", {**good, "unknown": {"date": "Why."}}) and faults_of("x", {**good, "recorded": "0adaae0"})
     assert not faults_of("x", {**good, "date": "2026-11-26", "recorded": "0adaae0"})
+    assert not list(equal_titles({"x": {"title": "T"}, "y": {"title": "U"}})) and len(list(equal_titles({"x": {"title": "T"}, "y": {"title": "T"}}))) == 1
     assert unknown_commits({}) == [] and len(unknown_commits({"x": {"recorded": "0" * 9}})) in (0, 1)
     tables = {"results/jobs_h200.json": {"tables": [{"name": "jobs", "columns": [{"key": key} for key in ("j", "mitsuba_3_9", "pbrt_v4")], "rows": [["S", 9.5, 7]]}]},
               "results/device_builds_h200.json": {"tables": [{"name": "builds", "columns": [], "rows": []}]}}
@@ -274,6 +283,7 @@ def main(arguments):
         seen[name] = load(path.read_text(encoding="utf-8"))
         faults += faults_of(name, seen[name])
     faults += unknown_commits(seen)
+    faults += equal_titles(seen)
     faults += peer_faults(seen, json.loads((ROOT / "bench/figures.json").read_text(encoding="utf-8")))
     for document in check_documents.documents():
         text = document.read_text(encoding="utf-8")

@@ -19,7 +19,7 @@ import sys
 import tempfile
 
 from measure import OWN, with_flags, words_of
-from measurement import write_tables
+from measurement import machine, write_tables
 
 COLUMNS = [("scene", "scene", None), ("picture", "picture", None), ("rel_mse", "relMSE", None), ("rel_mse_98", "relMSE of the best 98 %", None),
            ("hdr_flip", "HDR-FLIP", None), ("light", "light, more or less", "%"), ("seconds", "rendering", "s"), ("core_seconds", "core time", "s"),
@@ -112,7 +112,7 @@ def main():
         tables = [("errors", [COLUMNS[i] for i in used], [[row[i] for i in used] for row in rows])]
         if "across" in kind:
             tables.append(across([key for key, *_ in COLUMNS].index(kind["across"]), rows))
-        write_tables(given.output, given.pertev, kind["title"], tables, device, os.cpu_count(), notes)
+        write_tables(given.output, given.pertev, f"{kind['title']}, {machine(device)}", tables, device, os.cpu_count(), notes)
 
 
 if __name__ == "__main__":

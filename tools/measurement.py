@@ -33,6 +33,11 @@ def gpu_of(device):
     return subprocess.run(query, stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()[0].split(", ")
 
 
+def machine(device):
+    """The GPU's name, or the processor's. It ends titles, by which readers tell measurements of several machines apart."""
+    return gpu_of(device)[0] or processor()
+
+
 def own_command():
     script = pathlib.Path(sys.argv[0]).resolve()
     return shlex.join([str(script.relative_to(ROOT) if script.is_relative_to(ROOT) else script.name), *sys.argv[1:]])
