@@ -52,7 +52,7 @@ def main():
         print(*row, sep="\t")
     if given.output:
         columns = [("picture", "picture", None), ("result", "a call adds", "ms"), ("out", "with `out=`", "ms"), ("layers", "with `out=` of depth and ids too", "ms")]
-        write_measurement(given.output, given.program, "What a call from Python adds to its samples", columns, rows, given.device, given.threads,
+        write_measurement(given.output, given.program, "Overhead of a call from Python", columns, rows, given.device, given.threads,
                           ["The least of all calls in some seconds, with one sample a pixel, minus Session::render.", *given.note])
 
 

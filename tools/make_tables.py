@@ -28,6 +28,7 @@ import check_documents
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MARKER = re.compile(r"(<!-- table: (results/\S+\.json) (\S+)([^>]*?) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 FIGURES = re.compile(r"(<!-- figures -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+FRAGMENT = re.compile(r"(?:of|what|where|from|to|those|as|beside|its|their)\b", re.IGNORECASE)
 KEYS = {"format", "version", "program", "date", "command", "processor", "threads", "device", "driver", "title", "tables"}
 
 
@@ -57,6 +58,8 @@ def faults_of(name, measured):
     names = [table["name"] for table in measured.get("tables", [])]
     if len(names) != len(set(names)) or not names:
         faults.append(f"{name}: tables have no names, or two have one")
+    titles = [measured["title"], *(table["title"] for table in measured.get("tables", []))]
+    faults += [f"{name}: a title names what was measured: {title}" for title in titles if FRAGMENT.match(title)]
     for table in measured.get("tables", []):
         keys = [column["key"] for column in table["columns"]]
         if titles := [column["title"] for column in table["columns"] if re.search(r"(?:^|, )(?:s|ms|%|[MG](?:rays|samples)/s)$", column["title"])]:
@@ -232,6 +235,7 @@ def self_test():
                                                               {"key": "s", "title": "seconds", "unit": "s"}],
                         "rows": [["Sponza", Digits("1.10"), None], ["two words", Digits("2"), Digits("3e-5")]]}]}
     assert not faults_of("x", good)
+    assert faults_of("x", {**good, "title": "What it takes"}) and faults_of("x", {**good, "tables": [{**good["tables"][0], "title": "As before"}]})
     assert faults_of("x", {**good, "version": 2}) and faults_of("x", {k: v for k, v in good.items() if k != "device"})
     assert faults_of("x", {**good, "tables": good["tables"] * 2})
     assert faults_of("x", {**good, "tables": [{**good["tables"][0], "columns": [{"key": "k", "title": "a, ms", "unit": None}], "rows": [[1]]}]})

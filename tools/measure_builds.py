@@ -95,7 +95,7 @@ def main():
                 print(*row, sep="\t", flush=True)
         if given.output:
             notes = ["Each commit in a new clone, without a compiler cache.", "Cores of other processes are a mean over the time; figures are those of an idle machine where it is 0."]
-            write_measurement(given.output, program, "What building takes", COLUMNS, rows, "cpu", os.cpu_count(), notes)
+            write_measurement(given.output, program, "Times of building and testing", COLUMNS, rows, "cpu", os.cpu_count(), notes)
 
 
 if __name__ == "__main__":
