@@ -31,7 +31,7 @@ CLAUSES = re.compile(r"/// *(?:its|their|whether|why|how|where|when|that|these|i
 JOINTS = re.compile(r"(?://+|/\*+|#+)\s*(?:and|or|also|then|which|whose)\b", re.IGNORECASE)
 VAGUE = re.compile(r"\b(?:(?:is|are) (?:told|asked|seen)|asked (?:for|about)|somebody|nobody(?!\()|stuff|thrice|the very|but for|"
                    r"cut short|proven|lamps?|what is (?:there|wrong|right|to be)|what had been|for ever|whichever way|as it is,|anew|"
-                   r"leaves? no trace)\b", re.IGNORECASE)
+                   r"leaves? no trace|(?:hardly )?anybody|wherever (?:it|they) lies?|as it suits|if said so)\b", re.IGNORECASE)
 VAGUE_FOR_USERS = re.compile(VAGUE.pattern.replace("lamps?|", ""), re.IGNORECASE)
 LONGEST_SUBJECT = 72
 
@@ -284,6 +284,7 @@ CASES = [
     (".py", "'''Which of these.'''\n# And this.\na = 'b' # a set\n", 0),
     (".sh", "a=1 # then b\n# Then c\n", 1),
     (".h", "/// Takes what a lamp emits.\n", 1),
+    (".h", "/// Takes a file, wherever it lies.\n", 1),
     (".cpp", "int a; // the light that is asked\n       // for\n", 1),
     (".py", "a = 1  # nobody steers\n", 1),
     (".h", "/// Drops messages, as nobody() does; `lamp` sets 'a lamp'.\n", 0),

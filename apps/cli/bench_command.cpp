@@ -90,7 +90,7 @@ Fields measure(const std::string& file, Queue& queue, RenderSettings settings) {
          "{:.4g}"}};
 }
 
-/// Sponza and Sibenik of the test scenes, where PERTEV_SCENES says they are.
+/// Sponza and Sibenik of the test scenes, in the folder PERTEV_SCENES.
 std::vector<std::string> default_scenes() {
     const std::filesystem::path root = public_scenes_folder();
     std::vector<std::string> scenes;

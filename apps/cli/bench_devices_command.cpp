@@ -1,5 +1,5 @@
 // pertev bench devices: times one picture of the record, a batch of pictures, and frames in real time, by one device,
-// two, and so on to all that are named, and expects from the picture's times what more would take.
+// two, and so on to all that are named. From the picture's times it predicts those of more devices.
 
 #include <algorithm>
 #include <memory>
@@ -101,7 +101,7 @@ TimesTaken time_batch(std::span<const std::shared_ptr<Queue>> queues, const Pict
     BatchArrays arrays;
     std::vector<double> seconds;
     Hasher hasher;
-    for (uint32_t run = 0; run <= runs; ++run) { // the first one takes memory, warms up, and gives the hash
+    for (uint32_t run = 0; run <= runs; ++run) { // the first one takes memory and warms up; its hash counts
         const Stopwatch watch;
         InterruptSink sink;
         if (together) {
@@ -128,7 +128,7 @@ std::string names_of_some(std::span<const std::shared_ptr<Queue>> queues) {
     return text_of_devices(names);
 }
 
-/// Returns what `count` devices would take if each lost as much as those measured do, and if each film took its turn.
+/// Predicts the seconds of `count` devices if each loses as much as the measured ones, and films are added in turn.
 double expected_seconds(std::size_t count, const TimesTaken& alone, const TimesTaken& most, std::size_t of_most) {
     const double all = static_cast<double>(of_most), n = static_cast<double>(count);
     const double loss = (most.times.median - most.sum_s) * all / alone.times.median;

@@ -182,7 +182,7 @@ int bench_rays(RaysFlags& flags) {
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = open_queue(flags.machine, reporter);
     const UseThreads threads(queue->threads());
-    const TracerChoice choice = tracer_choice(flags.tracer, queue->is_cuda()).value(); // there is one: of the best tree
+    const TracerChoice choice = tracer_choice(flags.tracer, queue->is_cuda()).value(); // best trees have a default
     BenchReport report(reporter, flags.report, *queue, "Rays of the record");
     std::vector<double> ratios;
     for (const std::string& scene : scenes) bench_scene(scene, *queue, flags, choice, report, ratios, reporter);

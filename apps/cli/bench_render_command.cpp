@@ -1,5 +1,5 @@
-// pertev bench render: one job that other renderers were timed on (bench/jobs.json), and how many times as fast as
-// they it is done where that can be said (lab/stored_figures.h).
+// pertev bench render: one job that other renderers were timed on (bench/jobs.json). It prints the ratio to their rates
+// if device, scene and settings equal theirs (lab/stored_figures.h).
 
 #include <memory>
 #include <optional>

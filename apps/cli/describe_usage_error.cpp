@@ -152,7 +152,7 @@ std::string describe_strangers(const std::vector<const CLI::App*>& verbs) {
     return fmt::format("{}", fmt::join(flags, "; "));
 }
 
-/// Says which flag is given more often than it is taken; empty where none is.
+/// Names a flag that is repeated and accepted only once; empty if there is none.
 std::string describe_repetition(const CLI::App& verb) {
     for (const CLI::Option* flag : verb.get_options()) {
         const int most = std::max(flag->get_items_expected_max(), 1);
@@ -183,7 +183,7 @@ UsageError describe_usage_error(const CLI::App& app, const CLI::ParseError& erro
     std::vector<std::string> path;
     for (const CLI::App* verb : verbs) path.push_back(verb->get_name());
     std::string text = describe_strangers(verbs);
-    if (verbs.size() == 1) { // no verb there is has been named
+    if (verbs.size() == 1) { // the line names no known verb
         text += fmt::format("{}a verb is required: {}", text.empty() ? "" : "; ", fmt::join(names_below(app), ", "));
     }
     if (text.empty()) text = describe_repetition(*verbs.back());

@@ -18,7 +18,7 @@ inline void refuse(bool is_wrong, const Remark& why) {
     if (is_wrong) throw Error(ErrorCode::BadInput, why);
 }
 
-/// Refuses "a.png,b.exr", one file name that hardly anybody means. Throws Error(BadInput).
+/// Refuses "a.png,b.exr", one file name by which most users mean two files. Throws Error(BadInput).
 void refuse_list(const std::string& output);
 
 /// Replaces `-` among the outputs by the standard output in the format of this setting. Throws Error(BadInput) without

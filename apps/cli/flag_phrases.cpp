@@ -26,7 +26,7 @@ std::string location_json(const FileLocation& location) {
     return json + '}';
 }
 
-/// The settings that a reason names, as an object; a value is null where the reason gives none.
+/// The settings that a reason names, as an object; a value is null if the reason has none.
 std::string named_settings_json(const std::string& reason) {
     std::map<std::string, std::string, std::less<>> named;
     phrase_settings(reason, [&](std::string_view name, std::string_view value) {

@@ -71,7 +71,7 @@ public:
         add(name, texts);
         facts_.back().text = fmt::format("{}", fmt::join(texts, fmt::format("\n{:25}", "")));
     }
-    /// `origin` says where the value came from; empty: unknown.
+    /// `origin` names the source of the value; empty: unknown.
     void add(const ExrMetadata::value_type& entry, const std::string& origin) {
         const auto text = [](const auto& value) { return fmt::format("{}", value); };
         const std::string after = origin.empty() ? "" : fmt::format("  ({})", origin);
@@ -198,7 +198,7 @@ std::vector<std::string> names_of_objects(const Objects& objects) {
     return order;
 }
 
-/// Returns a line for each light: its name or number, kind, strength and place.
+/// Returns a line for each light: its name or number, kind, strength and position.
 std::vector<std::string> describe_lights(const Scene& scene) {
     std::vector<std::string> lines;
     for (const Light& light : scene.lights) {
@@ -271,7 +271,7 @@ void describe_solution(const InfoFlags& flags, Facts& facts) {
     const RadiositySolution solution = read_any_solution(flags.scene.scene);
     facts.add("solution", "radiosity");
     facts.add("triangles", solution.roots.size() / 2); // a face for each side
-    facts.add("shown", solution.patches.size());       // patches and parts of them, as solve says
+    facts.add("shown", solution.patches.size());       // patches and parts of them, as pertev solve reports
     facts.add("bytes", solution.bytes());
     const std::string part = describe(solution.extent);
     facts.add("holds", !solution.light ? "unknown, because an earlier version made it"

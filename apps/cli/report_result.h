@@ -13,7 +13,7 @@ namespace pertev {
 /// Peak host memory of this process.
 uint64_t peak_memory_bytes();
 
-/// With --json, writes an object with the flags that place this camera, with the names and values of an EXR's
+/// With --json, writes an object with the flags that reproduce this camera, with the names and values of an EXR's
 /// metadata, where vectors are texts and here arrays.
 void report_camera(const CameraSource& camera, Reporter& reporter);
 

@@ -56,7 +56,7 @@ Reporter::~Reporter() {
     end_progress();
     try {
         report_messages();
-    } catch (const std::bad_alloc&) { // there is worse to say then
+    } catch (const std::bad_alloc&) { // the error that exhausted memory matters more
     }
 }
 

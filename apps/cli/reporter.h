@@ -20,7 +20,7 @@ namespace pertev {
 /// -q silences everything but errors; --json turns everything into JSON lines on stdout. Every verb has both.
 struct ReportFlags {
     bool quiet = false, json = false;
-    std::string progress;    // "json": progress as JSON lines on stderr; empty: as it suits
+    std::string progress;    // "json": progress as JSON lines on stderr; empty: a bar or lines
     std::string measurement; // file that a benchmark writes its measurement into; empty: none
 };
 

@@ -31,15 +31,15 @@
 namespace pertev {
 namespace {
 
-/// A closed stdin, stdout or stderr gets /dev/null: else the first file opened would take its number, and with it what
-/// is meant for the terminal.
+/// Opens /dev/null for a closed stdin, stdout or stderr. Otherwise the first opened file would get its number and thus
+/// the terminal's output.
 void open_standard_files() {
     for (int fd = 0; fd <= STDERR_FILENO; ++fd) {
         if (::fcntl(fd, F_GETFD) < 0 && ::open("/dev/null", O_RDWR) < 0) std::_Exit(exit_status(ErrorCode::FileWrite));
     }
 }
 
-/// A reader that goes away or a file that grows over its limit is a write that fails, never the end of a render.
+/// Makes writes fail, instead of ending the process, if a pipe's reader has gone or a file is over its limit.
 void turn_signals_into_errors() {
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
@@ -53,9 +53,9 @@ bool is_no(std::string_view value) {
     return std::ranges::find(kNo, small) != std::end(kNo);
 }
 
-/// Returns whether errors are wanted as JSON: also where the line is wrong, so that no verb has read it.
+/// Returns whether errors must be JSON. The line may be wrong, so that no verb has read it.
 bool wants_json(int argc, char** argv) {
-    bool json = false; // by the last that says so, as the verb reads it
+    bool json = false; // the last such flag counts, as for the verb
     for (int i = 1; i < argc; ++i) {
         const std::string_view word = argv[i];
         if (word == "--") break; // only positional words follow
@@ -103,7 +103,7 @@ constexpr Verb kVerbs[] = {
     {"info", add_info_command},       {"check", add_check_command},     {"convert", add_convert_command},
     {"bench", add_bench_command},     {"lab", add_lab_command}};
 
-/// Adds the verb of the line alone where it begins with one, because the flags of all take as long as a small picture.
+/// Adds only the verb that begins the line, if one does: adding all flags takes as long as a small picture.
 void add_verbs(CLI::App& app, const std::vector<std::string>& words, int& status) {
     const std::string_view first = words.empty() ? std::string_view() : std::string_view(words.front());
     const bool is_named = std::ranges::find(kVerbs, first, &Verb::name) != std::end(kVerbs);

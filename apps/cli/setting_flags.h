@@ -28,7 +28,7 @@ const Setting* setting_of(const CLI::Option& flag);
 class SettingFlags {
 public:
     /// Adds a flag for each setting of `verbs`, one bit or several. The values in `options` are the defaults, and
-    /// `own` says of some settings what else holds without their flags.
+    /// `own` describes other defaults of some settings for this verb.
     void add(CLI::App& verb, uint32_t verbs, const PictureOptions& options,
              std::span<const Setting> table = all_settings(), const std::map<std::string_view, std::string>& own = {});
     /// Adds --settings FILE.

@@ -91,7 +91,7 @@ std::unique_ptr<Queue> queue_for_jpeg(const ViewFlags& flags, const Queue& rende
     if (flags.jpeg == "cpu" || !renders.is_cuda()) return nullptr;
     try {
         return std::make_unique<Queue>(Queue::make_cuda(renders.device_index(), renders.threads()));
-    } catch (const Error&) { // it has no room for two
+    } catch (const Error&) { // the device has no memory for a second queue
         return nullptr;
     }
 }

@@ -39,10 +39,10 @@ std::size_t folders_size(std::string_view rest) {
         if (slash > 0 && !is_folder(std::string(rest.substr(0, slash)))) break;
         size = slash + 1;
     }
-    return size > 1 ? size : 0; // the root alone says nothing, and JSON pointers begin with its slash
+    return size > 1 ? size : 0; // JSON pointers begin with the slash of the root
 }
 
-/// Returns whether /home alone, say, is named.
+/// Returns whether the text begins with a folder below the root, such as /home.
 bool is_below_root(std::string_view rest) {
     constexpr std::string_view ends = " \t\"'`:;,()";
     return rest.starts_with('/') && is_folder(std::string(rest.substr(0, rest.find_first_of(ends))));

@@ -33,7 +33,7 @@ RenderLoop::RenderLoop(const ViewerStart& start, FrameSource& source, Inbox& inb
       view_(start.view), shown_(start.view), camera_(start.camera, *start.scene), clock_(start.clock),
       shown_s_(start.clock.time_s), speed_(start.speed) {}
 
-/// Returns whether another time gives another picture.
+/// Returns whether the picture depends on the time.
 bool RenderLoop::time_matters() const { return clock_.end_s > 0 && (start_.is_animated || camera_.moves_with_time()); }
 
 bool RenderLoop::time_runs() const { return clock_.plays && time_matters() && saves_.empty(); }

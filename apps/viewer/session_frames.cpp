@@ -34,7 +34,7 @@ struct FlagSink final : Sink {
 
 bool is_beauty(ShownLayer layer) { return layer == ShownLayer::Beauty; }
 
-/// Returns the samples of the finished film; one gives every layer but the picture.
+/// Returns the samples of the finished film; one suffices for every layer except the picture.
 uint32_t wanted_samples(const FrameRequest& request) {
     return is_beauty(request.view.layer) ? request.view.options.render.samples : 1;
 }

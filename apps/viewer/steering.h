@@ -42,7 +42,7 @@ Pose zoom(const Pose& pose, float steps);
 /// Distance in metres of `message`, a Move, at `speed` metres per second.
 float metres_of(const ClientMessage& message, float speed);
 
-/// The flags of pertev render that place this camera: --eye --target --up, and the lens if it differs from their
+/// The flags of pertev render that reproduce this camera: --eye --target --up, and the lens if it differs from their
 /// defaults. `name` is the value of --camera, or empty. `origin` is the scene's origin in its file.
 std::string camera_flags(const Pose& pose, const Camera& camera, const std::string& name,
                          DoubleVec3 origin = {0, 0, 0});

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kMinFov = 0.01f, kMaxFov = 179; // degrees; the limits of a path's file
 constexpr int kMaxTargets = 256;                // number of targets tried to state a position to the bit
-constexpr float kFarthest = 1e9f;               // metres that anybody may go
+constexpr float kFarthest = 1e9f;               // metres; limit of the camera's position
 
 bool is_finite_transform(const Transform& m) {
     return is_finite(m.row0) && is_finite(m.row1) && is_finite(m.row2) && is_finite(m.translation);

@@ -75,7 +75,7 @@ public:
     bool add_key(float time_s, const Camera& lens);
     void remove_key(uint32_t index);
 
-    /// The flags of pertev render that place this camera at the time.
+    /// The flags of pertev render that reproduce this camera at the time.
     std::string flags(const Camera& lens, std::optional<double> time_s) const;
 
 private:

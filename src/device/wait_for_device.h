@@ -1,7 +1,7 @@
 #pragma once
 
 // Waits for the work of others on a queue's device, such as kernels of PyTorch that read an array which Pertev fills
-// again. The queue's own streams are not ordered with those of anybody else.
+// again. The queue's own streams are not ordered with streams of other programs.
 
 #include "device/queue.h"
 

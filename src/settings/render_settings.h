@@ -39,7 +39,7 @@ struct RenderSettings : IntegratorSettings {
     PixelFilter filter = PixelFilter::BlackmanHarris;
     float filter_radius = 0;                  // pixels; 0 = the filter's default
     uint32_t aovs = 0;                        // AovBits
-    LayersAt layers_at = LayersAt::Samples;   // the place of these layers
+    LayersAt layers_at = LayersAt::Samples;   // where these layers are sampled
     std::vector<std::string> light_groups;    // the last layers of light_paths, as the setting states them
     uint32_t sample_layers = 0;               // SampleLayerBits
     std::shared_ptr<const MatteNames> mattes; // ids of the scene's names, if layers show them

@@ -158,9 +158,9 @@ enum class Recorded : uint8_t {
 /// and changes no picture. Display: only how PNG and JPEG show it.
 enum class Changes : uint8_t { Scene, Camera, Picture, Display };
 
-/// The place of a file's path in a text of a setting. Such a file counts by its contents, wherever it lies.
+/// Position of a file's path in the text of a setting. Such a file is identified by its contents, not its location.
 enum class HoldsFile : uint8_t {
-    No,    // there is none, or the setting decides no picture
+    No,    // no path, or pictures do not depend on the setting
     Whole, // the text is a path, unless it is another value
     Named, // NAME=FILE
 };
@@ -179,7 +179,7 @@ struct Setting {
     const char* name; // name in C++, JSON and metadata, from which the flag is made
     SettingGroup group;
     const char* form = ""; // format of a value, such as N or X,Y,Z; empty: a switch
-    /// Returns the place of the value, which these options no longer share with copies (SharedValue::edit).
+    /// Returns a pointer to the value, which these options no longer share with copies (SharedValue::edit).
     SettingField (*field)(PictureOptions&);
     const char* sentence;       // describes the setting
     const char* more = "";      // further sentences for longer help

@@ -1,7 +1,7 @@
 #pragma once
 
 // Parts that the checkers of the kd-tree and the octree share: checks of a leaf's list, and whether each triangle is
-// listed wherever it lies.
+// in the list of each cell that it touches.
 
 #include <atomic>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The page of pertev view: draws the pictures that come, sends what keys and mouse ask for, shows the panel.
+// The page of pertev view: draws the pictures that come, sends the input of keys and mouse, shows the panel.
 
 import { button, element, make } from "./elements.js";
 import { showGone } from "./gone.js";

@@ -1,5 +1,5 @@
-// The time line of a scene that moves, and the recorder of the camera's path. Both show what the viewer says and send
-// what is set; time and keys are the viewer's, so that all pages see the same.
+// The time line of a scene that moves, and the recorder of the camera's path. Both show the viewer's state and send
+// the user's changes; time and keys are kept by the viewer, so that all pages see the same.
 
 import { button, element, make } from "./elements.js";
 import { makeGroup } from "./groups.js";

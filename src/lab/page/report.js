@@ -100,7 +100,7 @@ function showTable(table, isOpen = true) {
   return make("details", isOpen ? { open: "" } : {}, make("summary", {}, make("b", {}, table.title || table.name)), bar, scroll);
 }
 
-/** An axis from `least` to `most`: where a value lies in [0, 1], and the values with a tick, `isWhole` numbers if said so. */
+/** An axis from `least` to `most`: where a value lies in [0, 1], and the values with a tick, or whole numbers with `isWhole`. */
 function axis(least, most, isLog, isWhole) {
   if (isLog) {
     let [low, high] = [Math.floor(Math.log10(least) * 2) / 2, Math.ceil(Math.log10(most) * 2) / 2];

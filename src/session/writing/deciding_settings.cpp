@@ -13,7 +13,7 @@
 namespace pertev {
 namespace {
 
-/// The hash of what a file of cameras says, wherever it lies.
+/// The hash of the contents of a file of cameras, which does not depend on its path.
 std::string hash_of_cameras(const std::vector<CameraOfFile>& cameras) {
     std::string text;
     for (const CameraOfFile& camera : cameras) {
