@@ -16,6 +16,7 @@
 #include "scene/projection_features.h"
 #include "scene/scene_origin.h"
 #include "session/degrees.h"
+#include "settings/parse_values.h"
 
 namespace pertev {
 namespace {
@@ -362,7 +363,8 @@ void check_parameter(const Scene& scene, const SceneParameter& parameter, std::s
     const Property& property = property_of(parameter);
     for (const double value : values) {
         if (value >= property.low && value <= property.high) continue; // not NaN
-        fail(path, fmt::format("{} is out of range; expected {:g} to {:g}", value, property.low, property.high));
+        fail(path, fmt::format("{} is out of range; expected {} to {}", value, limit_text(property.low),
+                               limit_text(property.high)));
     }
     if (property.shape.size() == 2) {
         const double last[] = {0, 0, 0, 1};

@@ -46,8 +46,8 @@ void add_bench_page_command(CLI::App& bench, int& status) {
     const auto flags = std::make_shared<PageFlags>();
     CLI::App& verb = add_bench_verb(bench, "page", "Write a page of measurements: tables, plots, pictures",
                                     [flags, &status] { status = make_page(*flags); });
-    verb.add_option("measurements", flags->files, "JSON files of bench --report, of lab -o, or bench/results")
-        ->type_name("FILE...")
+    verb.add_option("MEASUREMENT", flags->files, "JSON files of bench --report, of lab -o, or bench/results")
+        ->type_name("")
         ->required();
     verb.add_option("-o,--output", flags->output, "the page")->type_name("PAGE.html")->required();
     add_report_flags(verb, flags->report);

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/version.h"
 #include "settings/check_settings.h"
+#include "settings/parse_values.h"
 
 namespace pertev {
 namespace {
@@ -180,8 +181,8 @@ std::string range_of(const Setting& setting) {
     if (!choices.empty()) return fmt::format("{}{}", setting.is_by_ray ? "[KIND=]" : "", fmt::join(choices, ", "));
     const bool has_range = setting.high > 0 || setting.low != 0 || setting.above;
     if (!has_range) return setting.form;
-    const std::string low = fmt::format("{}{:.10g}", setting.above ? "above " : "from ", setting.low);
-    return setting.high > 0 ? fmt::format("{} to {:.10g}", low, setting.high) : low;
+    const std::string low = (setting.above ? "above " : "from ") + limit_text(setting.low);
+    return setting.high > 0 ? fmt::format("{} to {}", low, limit_text(setting.high)) : low;
 }
 
 std::string default_of(const Setting& setting) {
@@ -192,8 +193,13 @@ std::string default_of(const Setting& setting) {
 
 /// Names the integrators that have the setting, or some of its values.
 std::string integrators_text(const Setting& setting) {
-    return fmt::format(" Integrators{}{}: {}.", setting.integrators_of.empty() ? "" : " of ", setting.integrators_of,
-                       fmt::join(integrators_with(setting), ", "));
+    const std::string_view values = setting.integrators_of;
+    const bool is_other = values.starts_with('!');
+    return fmt::format(" Integrators{}{}: {}.",
+                       values.empty() ? ""
+                       : is_other     ? " with other values than "
+                                      : " with ",
+                       values.substr(is_other ? 1 : 0), fmt::join(integrators_with(setting), ", "));
 }
 
 /// Escapes text for a Markdown cell.

@@ -1,6 +1,7 @@
 #include "settings/parse_values.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -37,17 +38,23 @@ bool has_digits(const std::string& number) { return number.find_first_of("123456
 
 } // namespace
 
+std::string limit_text(double limit) {
+    constexpr double kLargestWhole = 0x1p53; // beyond, a double skips whole numbers
+    const bool is_whole = -kLargestWhole <= limit && limit <= kLargestWhole && limit == std::trunc(limit);
+    return is_whole ? fmt::format("{}", static_cast<int64_t>(limit)) : fmt::format("{}", static_cast<float>(limit));
+}
+
 std::string why_no_number(const std::string& text, double low, double high) {
     const auto value = number_in(text);
     const bool is_one = value && *value >= static_cast<float>(low) && *value <= static_cast<float>(high);
-    return is_one ? "" : fmt::format("not a number from {} to {}", static_cast<float>(low), static_cast<float>(high));
+    return is_one ? "" : fmt::format("not a number from {} to {}", limit_text(low), limit_text(high));
 }
 
 std::string why_not_above(const std::string& text, double low, double high) {
     const auto value = number_in(text);
     if (value && *value > static_cast<float>(low) && *value <= static_cast<float>(high)) return "";
     const bool is_rounded = value && *value == 0 && has_digits(text);
-    return fmt::format("not a number above {} and at most {}{}", static_cast<float>(low), static_cast<float>(high),
+    return fmt::format("not a number above {} and at most {}{}", limit_text(low), limit_text(high),
                        is_rounded ? "; a number so near 0 counts as 0" : "");
 }
 
@@ -105,7 +112,7 @@ DoubleVec3 parse_position(const std::string& setting, const std::string& text) {
     const DoubleVec3 position = parse_doubles(setting, text);
     if (max_component(abs(to_float(position))) <= kMaxCoordinate) return position;
     throw Error(ErrorCode::OverLimit, setting, text,
-                fmt::format("beyond the limit of {:.4g} m from the origin", kMaxCoordinate));
+                fmt::format("beyond the limit of {} m from the origin", limit_text(kMaxCoordinate)));
 }
 
 bool parse_rgb(const std::string& text, Rgb& color) {

@@ -20,6 +20,9 @@ std::optional<float> number_in(std::string_view text);
 /// Parses numbers between commas, each within the range of floats.
 std::optional<std::vector<double>> numbers_in(std::string_view text);
 
+/// Returns the end of a range as messages and documents have it: whole numbers without an exponent.
+std::string limit_text(double limit);
+
 // Each returns why the text is no such value, without the text: "not a number from 0 to 1". Empty if it is one.
 std::string why_no_number(const std::string& text, double low, double high); // from low to high
 std::string why_not_above(const std::string& text, double low, double high); // above low, up to high

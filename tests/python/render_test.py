@@ -27,7 +27,7 @@ def rendered_by_program(*arguments):
 
 
 class Render(unittest.TestCase):
-    def test_pictures_have_the_bytes_of_the_program(self):
+    def test_a_picture_equals_the_command_lines(self):
         picture = pertev.render("cornell-box", size=(48, 32), spp=4, seed=7, eye=(0, 1, 3.5), device="cpu")
         by_program = rendered_by_program("cornell-box", "--size", "48x32", "--spp", "4", "--seed", "7", "--eye",
                                          "0,1,3.5", "--device", "cpu")

@@ -45,7 +45,8 @@ class WhatIsRefused(CliTest):
     def test_a_number_that_is_too_large_is_refused_with_the_maximum(self):
         for flag, limit in [("--time-limit 1e300", "3.4028235e+38"), ("--clamp 1e300", "3.4028235e+38"),
                             ("--exposure 1e300", "3.4028235e+38"), ("--eye 1e300,0,0", "3.4028235e+38"),
-                            ("--environment-rotation 1e30", "1000000"), ("--environment-scale 1e30", "1000000000000")]:
+                            ("--environment-rotation 1e30", "1000000"), ("--environment-scale 1e30", "1000000000000"),
+                            ("--focus 1e30", "1099511627776")]:
             outcome = self.refuse(2, "render", "cornell-box", "-o", "x.png", *flag.split(), says=[*flag.split(), limit])
             self.assertNotIn("finite", outcome.stderr)
 

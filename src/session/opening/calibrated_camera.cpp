@@ -80,7 +80,7 @@ Transform placed_by_pose(const CameraChoice& choice, const Scene& scene) {
     const Vec3 x = to_float(columns[0]), y = to_float(columns[1]), z = to_float(columns[2]);
     if (max_component(abs(to_float(columns[3]))) > kMaxCoordinate) {
         throw Error(ErrorCode::OverLimit, "camera_pose", text_of(m),
-                    fmt::format("beyond the limit of {:.4g} m from the origin", kMaxCoordinate));
+                    fmt::format("beyond the limit of {} m from the origin", limit_text(kMaxCoordinate)));
     }
     const Transform stated = {{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}, in_scene(scene, columns[3])};
     return off <= kAsStated ? stated : *without_scale(stated);
@@ -139,7 +139,7 @@ void offset_eye(const CameraChoice& choice, Camera& camera) {
     placed.translation = placed.translation + static_cast<float>(choice.eye_offset) * column(placed, 0);
     if (max_component(abs(placed.translation)) > kMaxCoordinate) {
         throw Error(ErrorCode::OverLimit, "eye_offset", fmt::format("{}", choice.eye_offset),
-                    fmt::format("beyond the limit of {:.4g} m from the origin", kMaxCoordinate));
+                    fmt::format("beyond the limit of {} m from the origin", limit_text(kMaxCoordinate)));
     }
     if (!choice.convergence) return;
     const auto refuse = [&](const char* why) {
