@@ -14,36 +14,41 @@ double Animation::end_s() const {
     return end;
 }
 
-std::vector<bool> moving_nodes(const Scene& scene) {
-    std::vector<bool> moves(scene.nodes.size());
+namespace {
+
+/// Returns the nodes of which an animation changes a part that `selects` accepts, and all nodes below these.
+template <class Selects>
+std::vector<bool> nodes_below_animated(const Scene& scene, const Selects& selects) {
+    std::vector<bool> found(scene.nodes.size());
     bool any = false;
     for (const Animation& animation : scene.animations) {
         for (const AnimationChannel& channel : animation.channels) {
-            if (places_node(channel.part)) moves[channel.target] = any = true;
+            if (selects(channel.part)) found[channel.target] = any = true;
         }
     }
-    if (!any) return moves;
+    if (!any) return found;
     for (const uint32_t node : parents_first(scene.nodes)) {
         const uint32_t parent = scene.nodes[node].parent;
-        if (parent != kNoNode && moves[parent]) moves[node] = true;
+        if (parent != kNoNode && found[parent]) found[node] = true;
     }
-    return moves;
+    return found;
 }
+
+} // namespace
+
+std::vector<bool> moving_nodes(const Scene& scene) { return nodes_below_animated(scene, places_node); }
 
 std::vector<bool> may_move(const Scene& scene) {
     std::vector<bool> moving(scene.instances.size());
     if (scene.animations.empty()) return moving;
     const std::vector<bool> is_repositioned = moving_nodes(scene);
-    std::vector<bool> is_reshaped(scene.nodes.size()), may_vanish(scene.nodes.size());
+    const std::vector<bool> may_vanish =
+        nodes_below_animated(scene, [](AnimatedPart part) { return part == AnimatedPart::Visibility; });
+    std::vector<bool> is_reshaped(scene.nodes.size());
     for (const Animation& animation : scene.animations) {
         for (const AnimationChannel& channel : animation.channels) {
             if (channel.part == AnimatedPart::Weights) is_reshaped[channel.target] = true;
-            if (channel.part == AnimatedPart::Visibility) may_vanish[channel.target] = true;
         }
-    }
-    for (const uint32_t node : parents_first(scene.nodes)) {
-        const uint32_t parent = scene.nodes[node].parent;
-        if (parent != kNoNode && may_vanish[parent]) may_vanish[node] = true;
     }
     std::vector<bool> skin_moves;
     for (const Skin& skin : scene.skins) {

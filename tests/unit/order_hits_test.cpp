@@ -39,8 +39,8 @@ TEST_CASE("the hits of a round are sorted by shading group, each once") {
     scene.instances = device_instances.data();
     scene.shading_groups = device_groups.data();
     const RoundHits hits = {{nullptr, device_hits.data()}, round.data(), kCapacity - 1};
-    launch(queue, "count_groups", kActive, CountGroups{scene, hits, round.data()});
-    launch(queue, "order_hits", kActive, OrderHits{scene, hits, round.data(), order.data()});
+    launch(queue, "count_groups", kActive, CountGroups{scene, hits});
+    launch(queue, "order_hits", kActive, OrderHits{scene, hits, order.data()});
 
     std::vector<uint32_t> sorted = order.download();
     CHECK(std::ranges::is_sorted(sorted, {}, [&](uint32_t i) { return group_of.at(i); }));

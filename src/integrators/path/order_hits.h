@@ -15,7 +15,7 @@ namespace pertev {
 /// Hits of the paths of a round.
 struct RoundHits {
     HitQueueView hits;
-    const RoundCounts* round;
+    RoundCounts* round;
     uint32_t last; // slot of the first new path
 
     /// Returns the slot of the path at index i: those that continue come first, and those that begin lie at the end.
@@ -32,11 +32,10 @@ struct RoundHits {
 struct CountGroups {
     SceneView scene;
     RoundHits hits;
-    RoundCounts* round;
 
     static constexpr BlockShape kShape = {512, 2};
     HD void operator()(uint32_t i, bool is_there) const {
-        append_by_key(round->in_group, is_there ? hits.group_of(scene, i) : 0u, is_there);
+        append_by_key(hits.round->in_group, is_there ? hits.group_of(scene, i) : 0u, is_there);
     }
 };
 
@@ -44,15 +43,14 @@ struct CountGroups {
 struct OrderHits {
     SceneView scene;
     RoundHits hits;
-    RoundCounts* round;
     uint32_t* order;
 
     static constexpr BlockShape kShape = {512, 2};
     HD void operator()(uint32_t i, bool is_there) const {
         const uint32_t group = is_there ? hits.group_of(scene, i) : 0u;
-        uint32_t slot = append_by_key(round->ordered, group, is_there);
+        uint32_t slot = append_by_key(hits.round->ordered, group, is_there);
         if (!is_there) return;
-        for (uint32_t k = 0; k < group; ++k) slot += round->in_group[k];
+        for (uint32_t k = 0; k < group; ++k) slot += hits.round->in_group[k];
         order[slot] = i;
     }
 };

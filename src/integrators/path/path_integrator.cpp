@@ -317,8 +317,8 @@ void PathIntegrator::launch_paths(Wavefront& w, const Work& work, const Round& r
         const WorkCount active = {round.most, &round.counts->active};
         if (orders_hits(kFeatures)) {
             const RoundHits found = {hits, round.counts, last};
-            launch(queue_, "count_groups", active, CountGroups{picture_.scene, found, round.counts});
-            launch(queue_, "order_hits", active, OrderHits{picture_.scene, found, round.counts, w.order.data()});
+            launch(queue_, "count_groups", active, CountGroups{picture_.scene, found});
+            launch(queue_, "order_hits", active, OrderHits{picture_.scene, found, w.order.data()});
         }
         launch(queue_, "shade_hits", active,
                Shade<kFeatures, Listener>{work.job, paths, next, hits, w.shadows(), w.listened(w.round), round.counts,
