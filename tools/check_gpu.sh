@@ -25,7 +25,7 @@ for part in "${parts[@]}"; do
         files='*/consistency/*,*/seams/*,*/watertight_test.cpp,*/ray_sets_test.cpp,*/glowing_room_test.cpp,*/path_parts_test.cpp'
         files+=',*/light_leak_test.cpp,*/meter_exposure_test.cpp,*/session_test.cpp,*/emitter_faces_test.cpp,*/hidden_back_test.cpp'
         files+=',*/shadow_terminator_test.cpp,*/film_test.cpp,*/film_add_test.cpp,*/scene_on_device_test.cpp,*/predicted_bytes_test.cpp,*/queue_test.cpp,*/isolated_rays_test.cpp,*/device_builder_test.cpp,*/structure_on_device_test.cpp,*/viewer_frames_test.cpp,*/raster_test.cpp,*/reyes_test.cpp,*/subpaths_test.cpp,*/bidirectional_test.cpp,*/photon_map_test.cpp,*/irradiance_cache_test.cpp,*/irradiance_picture_test.cpp,*/frame_bias_test.cpp,*/motion_blur_test.cpp'
-        files+=',*/cast_test.cpp,*/whitted_test.cpp,*/distributed_test.cpp,*/light_paths_test.cpp,*/measure_irradiance_test.cpp,*/thesis_pictures_test.cpp,*/motion_vectors_test.cpp,*/restir_test.cpp'
+        files+=',*/cast_test.cpp,*/whitted_test.cpp,*/distributed_test.cpp,*/light_paths_test.cpp,*/thin_walls_test.cpp,*/order_hits_test.cpp,*/measure_irradiance_test.cpp,*/thesis_pictures_test.cpp,*/motion_vectors_test.cpp,*/restir_test.cpp'
         run "$bin/pertev_tests" --device cuda --source-file="$files"
         run python3 "$here/../tests/robust/cli_records_test.py" "$bin/pertev" --device cuda
         [ -z "${PERTEV_OIDN:-}" ] || run python3 "$here/../tests/robust/cli_oidn_test.py" "$bin/pertev" --device cuda

@@ -42,7 +42,7 @@ MUTATIONS = [
      ("src/device_scene/halve_texture.h", "rows.weight(row) * columns.weight(column)", "1 + 0 * rows.weight(row) * columns.weight(column)")),
     ("what is cut out colours a mip-map", "unit/mip_maps", ("src/device_scene/halve_texture.h", "if (!is_srgb || !(sum.w > 0) || sum.w == weights)", "if (true)")),
     ("a mirrored ray's cone starts again", "unit/mip_maps", ("src/integrators/path/path_vertex.h", "return seen - path.bsdf_pdf;", "return seen;")),
-    ("a scattered ray has the camera's cone", "unit/mip_maps", ("src/integrators/path/path_vertex.h", "kShare * distance / sqrt(path.bsdf_pdf)", "0 * kShare * distance / sqrt(path.bsdf_pdf)")),
+    ("a scattered ray has the camera's cone", "unit/mip_maps", ("src/integrators/path/path_vertex.h", "kShare * (path.passed + distance)", "0 * kShare * (path.passed + distance)")),
     ("ReSTIR sees textures without mip-maps", "unit/mip_maps", ("src/restir/pixel_surfaces.h", "filters ? camera.pixel_width(distance) : 0.0f", "0 * distance")),
     ("mip-maps stay when their textures change", "unit/mip_maps", ("src/device_scene/scene_on_device.cpp", "    mip_maps_.reset(); // made of the former ones\n", "")),
     ("a kernel for batches draws a batch's numbers without one", "unit/mip_maps", ("src/integrators/path/path_stages.h", "const bool is_tall = (kFeatures & kBatched) != 0 && job.picture.batch.is_there();", "const bool is_tall = (kFeatures & kBatched) != 0;")),

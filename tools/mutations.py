@@ -7,11 +7,11 @@ import lobe_mutations
 import part_mutations
 
 MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + lobe_mutations.MUTATIONS + frame_mutations.MUTATIONS + [
-    ("shadow rays without a time", "consistency/shutter", ("src/integrators/path/path_loop.inl", "shadow_keys_[i], path.time}", "shadow_keys_[i], kAtRest}")),
+    ("shadow rays without a time", "consistency/shutter", ("src/integrators/path/path_loop.inl", "path.time,      job_.passes_thin_walls}", "kAtRest, job_.passes_thin_walls}")),
     ("weights without the ways that end earlier", "statistical/bidirectional",
      ("src/integrators/subpaths/subpath_memory.h", "last + earlier * squared_density(reverse_pdf)", "last + 0.0f * earlier * squared_density(reverse_pdf)")),
     ("half of a shadow ray's diffuse light counted as glossy", "statistical/light_paths",
-     ("src/integrators/path/layer_listeners.h", "shadow_data_ = {exact_diffuse_share(", "shadow_data_ = {0.5f * exact_diffuse_share(")),
+     ("src/integrators/path/layer_listeners.h", "exact_diffuse_share(at.surface, at.wo, wi, 0) *", "0.5f * exact_diffuse_share(at.surface, at.wo, wi, 0) *")),
     ("particles on the film without the pixel filter's density", "statistical/bidirectional",
      ("src/integrators/subpaths/particle_stages.h", "return 0.5f / filter.radius;", "return 1.0f;")),
     ("swap a MIS weight", "statistical/path_parts statistical/glowing_room",
@@ -28,8 +28,8 @@ MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + lobe_mutatio
     ("the clamp cuts what BSDF sampling finds one scattering earlier", "statistical/emitter_faces",
      ("src/integrators/path/path_vertex.h", "clamp_contribution(settings, path.depth, weight,", "clamp_contribution(settings, path.depth + 1, weight,")),
     ("the clamp cuts what next-event estimation finds one scattering earlier", "statistical/emitter_faces",
-     ("src/integrators/path/path_vertex.h", "clamp_contribution(settings, path.depth + 1, weight,",
-      "clamp_contribution(settings, path.depth + 2, weight,")),
+     ("src/integrators/path/path_vertex.h", "clamp_contribution(settings, scatterings, weight,",
+      "clamp_contribution(settings, scatterings + 1, weight,")),
     ("the clamp comes after the weight", "statistical/emitter_faces",
      ("src/integrators/path/path_vertex.h", "limit = weight * settings.clamp;", "limit = settings.clamp + 0.0f * weight;")),
     ("light passes the backs that the camera looks through", "unit/hidden_back",

@@ -343,7 +343,7 @@ MUTATIONS = [
     ("a scattering far from the origin is beyond its body", "statistical/media",
      ("src/device_scene/free_flight.h", "position = within_part(origin, at, part);", "position = at;")),
     ("a solid without a medium absorbs nothing beside one with a medium", "statistical/media",
-     ("src/integrators/path/path_vertex.h", "if (!kAbsorbs && path.interior.top() != 0) return true;", "if (!kAbsorbs) return true;")),
+     ("src/integrators/path/path_vertex.h", "if (has_flown && path.interior.top() != 0) return true;", "if (has_flown) return true;")),
     ("the light tree's density after a medium is that of the surface before it", "statistical/selected_lights",
      ("src/integrators/path/path_vertex.h", "    path.normal = {0, 0, 0};\n", "")),
     ("fog takes away the glass that reaches out of it", "unit/nest_solids",

@@ -63,13 +63,15 @@ HD inline uint32_t coin_key(SampleKey sample, uint32_t depth, bool is_shadow) {
 
 struct AcceptHit {
     const SceneView& scene;
-    TriangleId start, target; // never hit by this ray
-    uint32_t key;             // key of the path and depth, for the coin of blended surfaces
-    float time = kAtRest;     // time of the ray while the shutter is open, [0, 1]
+    TriangleId start, target;       // never hit by this ray
+    uint32_t key;                   // key of the path and depth, for the coin of blended surfaces
+    float time = kAtRest;           // time of the ray while the shutter is open, [0, 1]
+    bool passes_thin_walls = false; // for shadow rays whose light is dimmed by them (thin_walls.h)
 
     HD bool operator()(uint32_t instance, uint32_t primitive, float u, float v) const {
         if (instance == start.instance && primitive == start.primitive) return false;
         if (instance == target.instance && primitive == target.primitive) return false;
+        if (passes_thin_walls && scene.instances[instance].is_thin_wall != 0) return false;
         if (scene.any_alpha == 0) return true;
         return passes_alpha(instance, primitive, u, v);
     }

@@ -10,6 +10,12 @@
 
 namespace pertev {
 
+/// Surfaces that rays pass through whatever their alpha: a sum of these.
+enum RayPasses : uint32_t {
+    kPassesCulledBacks = 1, // camera rays
+    kPassesThinWalls = 2,   // AcceptHit::passes_thin_walls
+};
+
 /// Rays, and the data for accepting their candidates.
 struct TraceQuery {
     RayQueueView rays;
@@ -20,25 +26,30 @@ struct TraceQuery {
                                                     // which that is tested first
     const SceneView* moving = nullptr;              // in device memory; null if nothing moves while the shutter is
                                                     // open
-    bool hides_backs = false;                       // for camera rays, which pass through culled backs
+    uint32_t passes = 0;                            // RayPasses
 
     bool is_opaque() const { return scene == nullptr; }
 };
 
 /// Returns whether the candidate counts on an instance at rest that may let rays pass. It is not inlined, so that its
 /// texture lookups cost the traversal no registers.
-HD_CALL inline bool passes_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
+HD_CALL inline bool passes_surface(const SceneView* scene, const Ray* ray, uint32_t key, uint32_t passes,
                                    uint32_t instance, uint32_t primitive, float u, float v) {
-    if (hides_backs && hides_side(*scene, ray->direction, instance, primitive)) return true;
+    if ((passes & kPassesCulledBacks) != 0 && hides_side(*scene, ray->direction, instance, primitive)) return true;
+    if ((passes & kPassesThinWalls) != 0 && scene->instances[instance].is_thin_wall != 0) return true;
     return scene->any_alpha != 0 && !AcceptHit{*scene, {}, {}, key}.passes_alpha(instance, primitive, u, v);
 }
 
 /// Returns whether the candidate counts on an instance that may have moved. `time` is null if nothing moves while the
 /// shutter is open.
-HD_CALL inline bool passes_moved_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
+HD_CALL inline bool passes_moved_surface(const SceneView* scene, const Ray* ray, uint32_t key, uint32_t passes,
                                          const float* time, uint32_t instance, uint32_t primitive, float u, float v) {
     const AcceptHit accept{*scene, {}, {}, key, time != nullptr ? *time : kAtRest};
-    if (hides_backs && AcceptCameraHit{accept, ray->direction}.hits_hidden_back(instance, primitive)) return true;
+    if ((passes & kPassesCulledBacks) != 0 &&
+        AcceptCameraHit{accept, ray->direction}.hits_hidden_back(instance, primitive)) {
+        return true;
+    }
+    if ((passes & kPassesThinWalls) != 0 && scene->instances[instance].is_thin_wall != 0) return true;
     return scene->any_alpha != 0 && !accept.passes_alpha(instance, primitive, u, v);
 }
 
@@ -89,9 +100,9 @@ struct AcceptQueued {
         const Ray* const ray = query.rays.rays + query.rays.index(i);
         const uint32_t key = query.rays.keys != nullptr ? query.rays.keys[query.rays.index(i)] : 0;
         if constexpr (kMayMove) {
-            return !passes_moved_surface(query.scene, ray, key, query.hides_backs, time(), instance, primitive, u, v);
+            return !passes_moved_surface(query.scene, ray, key, query.passes, time(), instance, primitive, u, v);
         } else {
-            return !passes_surface(query.scene, ray, key, query.hides_backs, instance, primitive, u, v);
+            return !passes_surface(query.scene, ray, key, query.passes, instance, primitive, u, v);
         }
     }
     HD Ray move_back(uint32_t motion, const Ray& ray) const

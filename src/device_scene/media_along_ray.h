@@ -3,52 +3,10 @@
 // The media that a ray passes: that of the solid which fills each part of it (nested_solids.h), or the scene's own
 // where there is none. Clear boundaries divide a ray into parts; at other surfaces it ends.
 
-#include "device_scene/medium_boundaries.h"
 #include "device_scene/nested_solids.h"
-#include "trace/traverse_scene.h"
+#include "device_scene/next_crossing.h"
 
 namespace pertev {
-
-/// A ray's crossing of a boundary. Two at one distance are ordered by their triangles.
-struct BoundaryCrossing {
-    float distance = 0;  // in multiples of the direction's length
-    uint32_t number = 0; // number of the triangle
-    uint32_t instance = kNoHit;
-    bool enters = false; // from the front, into the instance's medium
-};
-
-/// Visitor of a traversal for the first crossing after another one.
-struct NextCrossingVisitor {
-    float after;
-    uint32_t after_number;
-    bool is_first;
-    Hit best;
-
-    HD float limit() const { return best.t; }
-    HD static constexpr bool visits_far_first() { return false; }
-    HD bool visit(uint32_t, uint32_t number, const TriangleHit& hit) {
-        const bool is_later = is_first || hit.t > after || (hit.t == after && number > after_number);
-        const bool is_nearer = hit.t < best.t || (hit.t == best.t && number < best.primitive);
-        if (is_later && is_nearer) best = {hit.t, hit.u, hit.v, 0, number};
-        return false;
-    }
-};
-
-/// Finds the first crossing of the ray after `crossing`, whose instance is kNoHit at first, and before `distance`.
-/// Returns false if there is none.
-HD_CALL inline bool find_next_crossing(const MediumBoundariesView& boundaries, Vec3 origin, Vec3 direction,
-                                       float distance, BoundaryCrossing& crossing) {
-    const bool is_first = crossing.instance == kNoHit;
-    // Boxes that end at the former crossing must not be culled.
-    const float from = is_first ? 0.0f : (1.0f - 0x1p-20f) * crossing.distance;
-    NextCrossingVisitor visitor = {crossing.distance, crossing.number, is_first, {}};
-    visitor.best.t = distance;
-    PlainTraversal::traverse(boundaries.tree, {origin, from, direction, distance}, 0, visitor, NoTraversalCounter{});
-    if (visitor.best.instance == kNoHit) return false;
-    const BoundaryTriangle& triangle = boundaries.triangles[visitor.best.primitive];
-    crossing = {visitor.best.t, visitor.best.primitive, triangle.instance, dot(direction, triangle.normal) < 0};
-    return true;
-}
 
 /// A part of a ray that lies in one medium: that of a solid's material, or of SceneView::surroundings.
 struct RayPart {
@@ -62,7 +20,7 @@ struct RayPart {
 template <class Visit>
 HD inline void visit_media(const SceneView& scene, InteriorList& list, Vec3 origin, Vec3 direction, float distance,
                            bool leaves, const Visit& visit) {
-    BoundaryCrossing crossing;
+    SurfaceCrossing crossing;
     float begin = 0;
     for (;;) {
         const bool crosses =

@@ -44,6 +44,7 @@ struct RayQueueView {
     const uint32_t* keys = nullptr; // keys of the coins of blended surfaces; null if no surface is blended
     const float* times = nullptr;   // while the shutter is open, [0, 1]; null: all is at rest
     int32_t step = 1;               // -1: the pointers are to the last elements, and ray i is i elements before them
+    bool passes_thin_walls = false; // AcceptHit::passes_thin_walls
     bool is_endless = false;        // all go from t = 0 to infinity; t_min and t_max hold numbers of the owner
 
     HD int64_t index(uint32_t i) const { return step * static_cast<int64_t>(i); }

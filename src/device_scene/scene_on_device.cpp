@@ -4,8 +4,8 @@
 
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "device_scene/crossed_surfaces.h"
 #include "device_scene/interior_of_light.h"
-#include "device_scene/medium_boundaries.h"
 #include "device_scene/pack_texels.h"
 #include "device_scene/part_arrays.h"
 #include "image/srgb_table.h"
@@ -57,7 +57,8 @@ uint16_t layers_above(const Scene& scene, std::size_t instance) {
     return static_cast<uint16_t>(count);
 }
 
-PartArrays list_instances(const PlacedScene& prepared, Instances& instances, SceneView& view) {
+PartArrays list_instances(const PlacedScene& prepared, const std::vector<bool>& is_thin_wall, Instances& instances,
+                          SceneView& view) {
     const Scene& scene = *prepared.scene;
     view.any_alpha = 0;
     view.any_unlit = 0;
@@ -79,15 +80,16 @@ PartArrays list_instances(const PlacedScene& prepared, Instances& instances, Sce
         view.triangle_count += scene.meshes[instance.mesh].triangle_count();
         const uint16_t has_alpha = material.alpha_mode != AlphaMode::Opaque ? 1 : 0;
         const uint16_t hides_back = material.double_sided ? 0 : 1;
+        const uint16_t is_wall = !is_thin_wall.empty() && is_thin_wall[i] ? 1 : 0;
         if (instance.is_background) view.background = static_cast<uint32_t>(i) + 1;
         view.any_alpha |= has_alpha;
         view.any_unlit |= material.is_unlit() ? 1u : 0u;
         view.any_hidden_back |= hides_back;
-        instances.passing[i / 32] |= uint32_t(has_alpha | hides_back) << i % 32;
+        instances.passing[i / 32] |= uint32_t(has_alpha | hides_back | is_wall) << i % 32;
         instances.views.push_back({world_from_local, inverse(world_from_local), instance.mesh, instance.material,
                                    has_alpha, hides_back, uint16_t(is_mirroring(world_from_local)),
                                    uint16_t(instance.is_hidden), uint16_t(prepared.is_baked[i] ? 1 : 0),
-                                   layers_above(scene, i)});
+                                   layers_above(scene, i), is_wall});
     }
     instances.first_triangle.push_back(static_cast<uint32_t>(view.triangle_count));
     if (view.triangle_count > UINT32_MAX) instances.first_triangle.clear();
@@ -198,12 +200,20 @@ void SceneOnDevice::update(Queue& queue, const PlacedScene& prepared, uint32_t p
     if ((parts & kPartShapes) != 0) update_shapes(queue, prepared);
     if ((parts & (kPartShapes | kPartGeometry)) != 0) update_geometry(queue, prepared);
     if ((parts & kPartPoses) != 0) update_poses(prepared);
-    if ((parts & kPartInstances) != 0) update_instances(queue, prepared);
+    bool has_other_walls = false;
+    if ((parts & (kPartGeometry | kPartInstances | kPartMaterials)) != 0) {
+        std::vector<bool> walls = find_thin_walls(prepared);
+        has_other_walls = walls != thin_walls_;
+        thin_walls_ = std::move(walls);
+    }
+    if ((parts & kPartInstances) != 0 || has_other_walls) update_instances(queue, prepared);
     if ((parts & kPartMaterials) != 0) update_materials(queue, *prepared.scene);
     if ((parts & kPartGeometry) != 0) closed_meshes_.clear();
     if ((parts & (kPartGeometry | kPartInstances | kPartMaterials)) != 0) {
         update_nesting(queue, prepared);
-        update_media(queue, prepared);
+        if ((parts & (kPartGeometry | kPartInstances)) != 0 || has_other_walls || has_media(*prepared.scene)) {
+            update_crossed(queue, prepared);
+        }
     }
     if ((parts & kPartTextures) != 0) update_textures(queue, *prepared.scene);
     if ((parts & kPartLights) != 0) update_lights(queue, prepared); // after the textures, which it reads
@@ -245,7 +255,7 @@ void SceneOnDevice::update_geometry(Queue& queue, const PlacedScene& prepared) {
 
 void SceneOnDevice::update_instances(Queue& queue, const PlacedScene& prepared) {
     Instances instances;
-    list_instances(prepared, instances, view_).upload(queue, instances_, "instances");
+    list_instances(prepared, thin_walls_, instances, view_).upload(queue, instances_, "instances");
 }
 
 void SceneOnDevice::update_materials(Queue& queue, const Scene& scene) {
@@ -264,19 +274,25 @@ void SceneOnDevice::update_nesting(Queue& queue, const PlacedScene& prepared) {
     arrays.upload(queue, nesting_, "nested solids");
 }
 
-void SceneOnDevice::update_media(Queue& queue, const PlacedScene& prepared) {
-    const MediumBoundaries found = find_medium_boundaries(prepared);
+/// Updates what a ray crosses straight on its way: media, their clear boundaries, and thin walls.
+void SceneOnDevice::update_crossed(Queue& queue, const PlacedScene& prepared) {
+    const CrossedSurfaces boundaries = find_medium_boundaries(prepared);
+    const CrossedSurfaces walls = surfaces_of_thin_walls(prepared, thin_walls_);
+    PartArrays arrays;
+    const auto add = [&](const CrossedSurfaces& surfaces, CrossedSurfacesView& view) {
+        view = {view_of(surfaces.tree)};
+        arrays.add(surfaces.tree.nodes, view.tree.nodes);
+        arrays.add(surfaces.tree.triangles, view.tree.triangles);
+        arrays.add(surfaces.triangles, view.triangles);
+    };
+    add(boundaries, view_.boundaries);
+    add(walls, view_.thin_walls);
     view_.has_media = has_media(*prepared.scene) ? 1 : 0;
     view_.surroundings = nullptr;
-    view_.boundaries = {view_of(found.tree)};
-    PartArrays arrays;
-    arrays.add(found.tree.nodes, view_.boundaries.tree.nodes);
-    arrays.add(found.tree.triangles, view_.boundaries.tree.triangles);
-    arrays.add(found.triangles, view_.boundaries.triangles);
     std::vector<MaterialParameters> around(view_.has_media);
     if (!around.empty()) around[0].medium = prepared.scene->medium;
     arrays.add(around, view_.surroundings);
-    arrays.upload(queue, boundaries_, "boundaries of media");
+    arrays.upload(queue, crossed_, "boundaries of media, and thin walls");
 }
 
 /// Finds the solids that hold each light, whose particles begin in their media.

@@ -20,8 +20,8 @@ namespace pertev {
 /// Parts of a scene that may change separately, as bits of a set of type uint32_t.
 enum ScenePart : uint32_t {
     kPartGeometry = 1,     // meshes
-    kPartInstances = 2,    // transforms and motions, and the world's origin; whether the materials have alpha
-                           // and cull back faces
+    kPartInstances = 2,    // transforms and motions, and the world's origin; whether the materials have alpha,
+                           // cull back faces and are thin walls
     kPartMaterials = 4,    // everything else of materials; their emission is part of the lights too
     kPartTextures = 8,     // images
     kPartLights = 16,      // near and far lights, and their sampling, except for the environment's own tables
@@ -71,7 +71,7 @@ private:
     void update_lights(Queue& queue, const PlacedScene& prepared);
     void update_environment(Queue& queue, const PlacedScene& prepared);
     void update_nesting(Queue& queue, const PlacedScene& prepared);   // after instances and materials
-    void update_media(Queue& queue, const PlacedScene& prepared);     // after instances and materials
+    void update_crossed(Queue& queue, const PlacedScene& prepared);   // after instances and materials
     void update_interiors(Queue& queue, const PlacedScene& prepared); // after nesting and media
     void update_shapes(Queue& queue, const PlacedScene& prepared);    // before geometry
     void update_poses(const PlacedScene& prepared) { deforming_.set_poses(prepared); }
@@ -86,10 +86,11 @@ private:
     std::optional<MipMapLevels> mip_maps_;
     ClosedMeshes closed_meshes_; // cleared where the geometry changes
     NestedSolids nested_;
+    std::vector<bool> thin_walls_;                         // find_thin_walls()
     ShadingVariant variant_ = ShadingVariant::General;     // variant of the materials alone
     std::shared_ptr<const RequestedLightTree> light_tree_; // that of the lights
     Buffer<std::byte> geometry_, instances_, materials_, lights_, light_nodes_, environment_, textures_, nesting_,
-        boundaries_, interiors_;
+        crossed_, interiors_;
 };
 
 /// The simplest shading variant that covers the scene.

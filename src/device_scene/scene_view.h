@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
+#include "device_scene/crossed_surfaces.h"
 #include "device_scene/interior_list.h"
-#include "device_scene/medium_boundaries.h"
 #include "device_scene/micro_triangle.h"
 #include "math/rigid_motion.h"
 #include "math/transform.h"
@@ -41,6 +41,7 @@ struct InstanceView {
     uint16_t is_hidden;    // 1 if it does not exist and world_from_local is undefined
     uint16_t is_baked;     // 1 if its triangles are traversed in the world, 0 if in its own space
     uint16_t layers_above; // Instance::layers_above
+    uint16_t is_thin_wall; // 1 if it is one of SceneView::thin_walls
 };
 
 struct SceneView {
@@ -70,7 +71,8 @@ struct SceneView {
     NestingView nesting;     // solids that lie in each other; then `variant` is General
     uint32_t has_media;      // 1 if a medium fills any part of space
     const MaterialParameters* surroundings; // its medium fills what no solid fills; null without media
-    MediumBoundariesView boundaries;
+    CrossedSurfacesView boundaries;         // clear boundaries of media
+    CrossedSurfacesView thin_walls;         // through which light goes straight to surfaces (thin_walls.h)
 };
 
 /// Returns whether a camera ray that hits this instance shows the background; true for kNoHit too.

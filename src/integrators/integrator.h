@@ -37,6 +37,7 @@ struct WorkSize {
     bool records_bounce = false;    // a frame records its first bounce
     bool has_interiors = false;     // solids lie in each other (SceneView::nesting)
     bool has_media = false;         // a medium fills any part of space
+    bool has_thin_walls = false;    // shadow rays may pass thin walls (SceneView::thin_walls)
     uint32_t tree_lights = 0;       // lights that a tree holds (LightTreeView::light_count)
 
     uint64_t pixels() const { return uint64_t(width) * height; }
@@ -48,6 +49,7 @@ inline WorkSize with_scene(WorkSize size, const SceneView& scene) {
     size.has_times = scene.motions.is_there();
     size.has_interiors = scene.nesting.is_there();
     size.has_media = scene.has_media != 0;
+    size.has_thin_walls = scene.thin_walls.is_there();
     size.tree_lights = scene.lights.tree.light_count;
     return size;
 }

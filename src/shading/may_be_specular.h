@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether a material may act as a smooth mirror or smooth glass.
+// Whether a material may act as a smooth mirror, smooth glass or a pane.
 
 #include "base/host_device.h"
 #include "shading/bsdf.h"
@@ -8,11 +8,13 @@
 
 namespace pertev {
 
+/// Returns whether a roughness, times a texture, may be that of a smooth surface.
+HD inline bool may_be_smooth(float roughness, const TextureRef& texture) {
+    return texture.has_image() || !(alpha_from_roughness(roughness) >= kSmoothAlpha);
+}
+
 /// Returns whether some point of a surface with this material may have a delta lobe.
 HD inline bool may_be_specular(const MaterialParameters& material) {
-    const auto may_be_smooth = [](float roughness, const TextureRef& texture) {
-        return texture.has_image() || !(alpha_from_roughness(roughness) >= kSmoothAlpha);
-    };
     if (material.is_unlit()) return false;
     if (material.has_coat() && may_be_smooth(material.coat_roughness, material.coat_roughness_texture)) return true;
     switch (material.kind) {
@@ -29,6 +31,12 @@ HD inline bool may_be_specular(const MaterialParameters& material) {
         break;
     }
     return may_be_smooth(material.roughness, material.roughness_texture);
+}
+
+/// Returns whether light may go straight through some point of a surface with this material, as through a pane.
+HD inline bool may_pass_straight(const MaterialParameters& material) {
+    return material.transmits() && material.thin_walled &&
+           may_be_smooth(material.roughness, material.roughness_texture);
 }
 
 } // namespace pertev

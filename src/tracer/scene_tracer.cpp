@@ -74,11 +74,13 @@ void SceneTracer::set_surfaces(const SceneView& scene) {
 
 TraceQuery SceneTracer::query_of(RayKind kind, const RayQueueView& rays) const {
     TraceQuery query = {.rays = rays};
-    query.hides_backs = kind == RayKind::Camera && scene_.any_hidden_back != 0;
-    if (scene_.any_alpha != 0 || query.hides_backs) {
+    const bool hides_backs = kind == RayKind::Camera && scene_.any_hidden_back != 0;
+    if (hides_backs) query.passes |= kPassesCulledBacks;
+    if (rays.passes_thin_walls) query.passes |= kPassesThinWalls;
+    if (scene_.any_alpha != 0 || query.passes != 0) {
         query.scene = scene_on_device_.data();
         query.passing = scene_.passing;
-        if (!query.hides_backs) query.micromaps = scene_.micromaps;
+        if (!hides_backs) query.micromaps = scene_.micromaps;
     }
     if (scene_.motions.is_there()) query.moving = scene_on_device_.data();
     return query;

@@ -3,6 +3,7 @@
 // Listeners for layers of light-path expressions, and for pictures of irradiance, which place a light meter on the
 // first surface of each path.
 
+#include "device_scene/thin_walls.h"
 #include "integrators/path/film_listener.h"
 #include "integrators/path/medium.h"
 
@@ -42,12 +43,15 @@ public:
     struct PathData {
         LightPathState state; // state before the next vertex
     };
+    /// States where a shadow ray ends, for light that lobes of either class have scattered at the vertex.
+    struct StatesAtLight {
+        LightPathState by_diffuse, by_glossy;
+    };
     struct ShadowData {
         Rgb diffuse; // part of the contribution that passes through diffuse lobes of the vertex
         uint32_t pixel;
-        LightPathState state; // state before the vertex
-        uint32_t column;      // column of the vertex's scattering to that side
-        uint32_t light;       // result of LightPathView::light_of
+        StatesAtLight states;
+        uint32_t light; // result of LightPathView::light_of
     };
 
     HD explicit LightPaths(const PathJob& job) : job_(job) {}
@@ -63,9 +67,8 @@ public:
     HD INLINE_ON_DEVICE void direct(const PathState& path, const SurfaceVertex& at, Vec3 wi, const ShadowRay& shadow) {
         if (!layers().is_there()) return;
         const bool is_transmission = !at.surface.same_side(at.wo, wi);
-        shadow_data_ = {exact_diffuse_share(at.surface, at.wo, wi, 0) * shadow.contribution, path.pixel, state_,
-                        layers().first_column(hit_.instance) + scattering_column(LobeClass::Diffuse, is_transmission),
-                        layers().light_of(lights(), shadow.target)};
+        keep_shadow(path, hit_.instance, is_transmission, shadow,
+                    exact_diffuse_share(at.surface, at.wo, wi, 0) * shadow.contribution);
     }
     HD INLINE_ON_DEVICE void scattered(const PathState& path, const SurfaceVertex& at, const BsdfSample& sample) {
         if (!layers().is_there()) return;
@@ -85,8 +88,7 @@ public:
     /// A medium's scattering is diffuse, at the body that it fills.
     HD void direct(const PathState& path, const MediumVertex& at, Vec3, const ShadowRay& shadow) {
         if (!layers().is_there()) return;
-        const uint32_t column = layers().first_column(at.instance) + scattering_column(LobeClass::Diffuse, false);
-        shadow_data_ = {shadow.contribution, path.pixel, state_, column, layers().light_of(lights(), shadow.target)};
+        keep_shadow(path, at.instance, false, shadow, shadow.contribution);
     }
     HD void scattered(const PathState&, const MediumVertex& at, const BsdfSample&) {
         if (!layers().is_there()) return;
@@ -97,11 +99,9 @@ public:
 
     HD void arrived(PathData&, const ShadowData& shadow_data, Rgb contribution) const {
         if (!layers().is_there()) return;
-        const auto after = [&](LobeClass lobe_class) {
-            return layers().after(shadow_data.state, shadow_data.column + scattering_column(lobe_class, false));
-        };
-        layers().add(job_.film, shadow_data.pixel, after(LobeClass::Diffuse), shadow_data.light, shadow_data.diffuse);
-        layers().add(job_.film, shadow_data.pixel, after(LobeClass::Glossy), shadow_data.light,
+        layers().add(job_.film, shadow_data.pixel, shadow_data.states.by_diffuse, shadow_data.light,
+                     shadow_data.diffuse);
+        layers().add(job_.film, shadow_data.pixel, shadow_data.states.by_glossy, shadow_data.light,
                      contribution - shadow_data.diffuse);
     }
 
@@ -118,17 +118,43 @@ public:
         if (queues.layer_parts == nullptr) return;
         const Float4 d = queues.layer_diffuse[i];
         const Uint4 p = queues.layer_parts[i];
-        shadow_data = {{d.x, d.y, d.z}, bits_of(d.w), {p.x, p.y}, p.z, p.w};
+        shadow_data = {{d.x, d.y, d.z}, bits_of(d.w), {{p.x, p.z & 0xffffu}, {p.y, p.z >> 16}}, p.w};
     }
     HD static void store_shadow_data(const ListenerQueues& queues, uint32_t i, const ShadowData& shadow_data) {
         if (queues.layer_parts == nullptr) return;
         queues.layer_diffuse[i] = {shadow_data.diffuse.r, shadow_data.diffuse.g, shadow_data.diffuse.b,
                                    float_of(shadow_data.pixel)};
-        queues.layer_parts[i] = {shadow_data.state.red_green, shadow_data.state.blue, shadow_data.column,
-                                 shadow_data.light};
+        const LightPathState &d = shadow_data.states.by_diffuse, &g = shadow_data.states.by_glossy;
+        queues.layer_parts[i] = {d.red_green, g.red_green, d.blue | g.blue << 16, shadow_data.light};
     }
 
 private:
+    /// Keeps what is known of a shadow ray from a vertex on `instance`; diffuse lobes have the part `diffuse` of its
+    /// contribution.
+    HD INLINE_ON_DEVICE void keep_shadow(const PathState& path, uint32_t instance, bool is_transmission,
+                                         const ShadowRay& shadow, Rgb diffuse) {
+        const uint32_t column = layers().first_column(instance);
+        const auto after = [&](LobeClass lobe_class) {
+            return layers().after(state_, column + scattering_column(lobe_class, is_transmission));
+        };
+        StatesAtLight states = {after(LobeClass::Diffuse), after(LobeClass::Glossy)};
+        if (job_.passes_thin_walls) {
+            const Ray ray = {shadow.origin, 0.0f, shadow.direction, shadow.t_max};
+            states = after_thin_walls(job_.picture.scene, layers(), states, ray);
+        }
+        shadow_data_ = {diffuse, path.pixel, states, layers().light_of(lights(), shadow.target)};
+    }
+    /// Each thin wall on a shadow ray scatters its light as a lobe without extent.
+    HD_CALL static StatesAtLight after_thin_walls(const SceneView& scene, const LightPathView& layers,
+                                                  StatesAtLight states, Ray ray) {
+        visit_thin_walls(scene, ray.origin, ray.direction, ray.t_max, [&](const SurfaceCrossing& crossing) {
+            const uint32_t column =
+                layers.first_column(crossing.instance) + scattering_column(LobeClass::Specular, true);
+            states = {layers.after(states.by_diffuse, column), layers.after(states.by_glossy, column)};
+            return false;
+        });
+        return states;
+    }
     HD const LightPathView& layers() const { return job_.layers; }
     HD const LightSetView& lights() const { return job_.picture.scene.lights; }
 

@@ -14,7 +14,7 @@ Features features_without_tree(const PathJob& job) {
     return features_of(picture.scene.variant) | (has_times ? Features{kMoving} : 0) |
            (picture.batch.is_there() ? Features{kBatched} : 0) | (filters ? Features{kMipMapped} : 0) |
            (picture.scene.nesting.is_there() ? Features{kNested} : 0) |
-           (picture.scene.has_media != 0 ? Features{kMedia} : 0);
+           (picture.scene.has_media != 0 || job.passes_thin_walls ? Features{kMedia} : 0);
 }
 
 } // namespace

@@ -88,6 +88,9 @@ void PathIntegrator::Wavefront::take(Queue& queue, const PathParts& parts) {
     if (parts.has_normals && sets[0].normals.size() == 0) {
         for (Paths& set : sets) set.normals = {queue, capacity, "paths"};
     }
+    if (parts.has_thin_walls && sets[0].passed.size() == 0) {
+        for (Paths& set : sets) set.passed = {queue, capacity, "paths"};
+    }
     if (parts.has_layers && layer_parts.size() == 0) {
         for (Paths& set : sets) set.states = {queue, capacity, "paths"};
         layer_diffuse = {queue, capacity, "shadow rays"};
@@ -102,8 +105,8 @@ void PathIntegrator::Wavefront::take(Queue& queue, const PathParts& parts) {
 
 PathQueueView PathIntegrator::Wavefront::paths(uint32_t of_round) const {
     const Paths& set = sets[of_round % 2];
-    return {set.rays.data(),     set.starts.data(), path_keys.data(),     set.throughput.data(),
-            set.radiance.data(), path_times.data(), set.interiors.data(), set.normals.data()};
+    return {set.rays.data(),   set.starts.data(),    path_keys.data(),   set.throughput.data(), set.radiance.data(),
+            path_times.data(), set.interiors.data(), set.normals.data(), set.passed.data()};
 }
 
 ShadowQueueView PathIntegrator::Wavefront::shadows() const {
@@ -149,6 +152,7 @@ void PathIntegrator::reserve(const WorkSize& size) {
                      .splits_light = size.splits_light,
                      .records_bounce = size.records_bounce,
                      .has_interiors = size.has_interiors,
+                     .has_thin_walls = size.has_thin_walls,
                      .has_normals = uses_light_tree(settings_.path.light_choice, size.tree_lights, size.has_times)});
 }
 
@@ -170,6 +174,7 @@ void PathIntegrator::allocate_wavefronts(uint64_t samples, const PathParts& part
     parts_.splits_light |= parts.splits_light;
     parts_.records_bounce |= parts.records_bounce;
     parts_.has_interiors |= parts.has_interiors;
+    parts_.has_thin_walls |= parts.has_thin_walls;
     parts_.has_normals |= parts.has_normals;
     const Size size = size_for(samples, batch_, queue_.is_cuda(), settings_.path.max_depth, parts_);
     // Two wavefronts can serve as one, so that passes of few samples and of many use the same memory.
@@ -207,6 +212,8 @@ PathJob PathIntegrator::job_for(const FilmView& film) const {
     // Frames reproject reflections by what the last ray hits.
     const bool by_nee = settings_.path.strategy == LightStrategy::NeeOnly && !film.frame.is_there();
     job.ends_by_nee = by_nee && picture_.scene.any_unlit == 0;
+    // ReSTIR's visibility rays end at thin walls.
+    job.passes_thin_walls = picture_.scene.thin_walls.is_there() && output_of(job) != PathOutput::ReusedFrames;
     job.selects_by_tree = uses_light_tree(job);
     return job;
 }
@@ -349,7 +356,8 @@ void PathIntegrator::begin_paths(Wavefront& w, const Work& work, const Round& ro
 void PathIntegrator::launch_light(Wavefront& w, const Work& work, const Round& round) {
     const ShadowQueueView shadows = w.shadows();
     const WorkCount shadow_rays = {round.most, &round.counts->shadows};
-    tracer_->find_occlusions(shadows.query(), shadow_rays, {nullptr, shadows.keys}, // a ray's key has been used by then
+    tracer_->find_occlusions(shadows.query(work.job.passes_thin_walls), shadow_rays,
+                             {nullptr, shadows.keys}, // a ray's key has been used by then
                              round.pool(RayKind::Shadow));
     const PathQueueView next = w.paths(w.round + 1);
     choose_shading(work.job, [&]<Features, class Listener>() {

@@ -102,6 +102,7 @@ private:
             Buffer<Uint2> states;    // if there are layers
             Buffer<Uint2> interiors; // if solids are nested
             Buffer<Vec3> normals;    // if lights are selected by a tree
+            Buffer<float> passed;    // if shadow rays may pass thin walls
         };
         uint32_t capacity;
         uint32_t in_flight = 0; // maximum for the current call of render()

@@ -19,10 +19,11 @@ struct PathJob {
     PictureView picture;
     PathSettings settings;
     FilmView film;
-    LightPathView layers;         // may be empty
-    bool is_meter = false;        // the picture shows the irradiance of visible surfaces, W/m2
-    bool ends_by_nee = false;     // at the maximum depth no ray finds what next-event estimation has not
-    bool selects_by_tree = false; // uses_light_tree(), for vertices in lanes
+    LightPathView layers;           // may be empty
+    bool is_meter = false;          // the picture shows the irradiance of visible surfaces, W/m2
+    bool ends_by_nee = false;       // at the maximum depth no ray finds what next-event estimation has not
+    bool selects_by_tree = false;   // uses_light_tree(), for vertices in lanes
+    bool passes_thin_walls = false; // shadow rays pass thin walls (device_scene/thin_walls.h)
 };
 
 /// Features that a scene and a request use. Code for absent features would cost registers.
@@ -37,7 +38,7 @@ enum Feature : Features {
     kMipMapped = 64,  // textures are filtered; code with it filters where the settings say so
     kNested = 128,    // solids lie in each other; code with it also serves scenes without
     kLightTree = 256, // lights are selected by a tree
-    kMedia = 512,     // media absorb and scatter; code with it has kNested
+    kMedia = 512,     // media absorb and scatter, or shadow rays pass thin walls; code with it has kNested
 };
 inline constexpr Features kPlainDiffuse = 0, kDiffuse = kTextured | kAlpha, kUnstacked = kDiffuse | kLayered,
                           kAllMaterials = kUnstacked | kStacked;

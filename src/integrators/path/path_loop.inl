@@ -50,7 +50,8 @@ protected:
         };
         const auto accept_of = [&](uint32_t i) {
             const PathState& path = paths_[shadow_paths_[i]];
-            return AcceptHit{scene_of(path), shadow_rays_[i].start, shadow_rays_[i].target, shadow_keys_[i], path.time};
+            return AcceptHit{scene_of(path), shadow_rays_[i].start, shadow_rays_[i].target, shadow_keys_[i],
+                             path.time,      job_.passes_thin_walls};
         };
         find_occlusions<Floats>(trees_, shadows_, RayOrder::Together, ray_of, accept_of, occluded_);
     }

@@ -27,6 +27,7 @@ struct PathQueueView {
     float* times;       // the times of RayQueueView; null unless something moves while the shutter is open
     Uint2* interiors;   // PathState::interior; null unless solids are nested
     Vec3* normals;      // PathState::normal; null unless lights are selected by a tree
+    float* passed;      // PathState::passed; null unless the scene has thin walls
 
     /// Query of the rays at slots 0, 1, ..., or of those from the camera, backwards from `last`.
     RayQueueView query() const {
@@ -93,8 +94,13 @@ struct ShadowQueueView {
     Float4* contribution; // rgb, bits of the path's slot in the next round's arrays with kEndsPath
     float* times;         // the times of PathQueueView
 
-    RayQueueView query() const {
-        return {.rays = rays, .starts = starts, .targets = targets, .keys = keys, .times = times};
+    RayQueueView query(bool passes_thin_walls) const {
+        return {.rays = rays,
+                .starts = starts,
+                .targets = targets,
+                .keys = keys,
+                .times = times,
+                .passes_thin_walls = passes_thin_walls};
     }
 
     HD void store(uint32_t i, const ShadowRay& ray, uint32_t path, uint32_t key) const {

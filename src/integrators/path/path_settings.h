@@ -40,6 +40,7 @@ struct PathParts {
     bool splits_light = false;   // a frame of samples separates kinds of light (FilmView::frame)
     bool records_bounce = false; // a frame stores its first bounce
     bool has_interiors = false;  // solids lie in each other
+    bool has_thin_walls = false; // WorkSize::has_thin_walls
     bool has_normals = false;    // lights are selected by a tree
 };
 

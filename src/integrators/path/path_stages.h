@@ -117,6 +117,7 @@ struct Shade {
             if ((kFeatures & kStacked) != 0 && !begins) path.start = paths.start_of(slot);
             if constexpr ((kFeatures & kNested) != 0) path.interior = interior_of(path.pixel, slot, begins);
             if constexpr (LightChoice<kFeatures>::kReadsNormal) path.normal = begins ? Vec3{} : paths.normals[slot];
+            if ((kFeatures & kMedia) != 0 && paths.passed != nullptr) path.passed = begins ? 0.0f : paths.passed[slot];
             if (kMoves) path.time = job.picture.camera.time(job.settings.sampler, of_sample);
             const Hit hit = hits.load(slot);
             key = coin_key(of_sample, path.depth, true);
@@ -141,6 +142,7 @@ struct Shade {
                        scene_of<kFeatures>(job, path.pixel).any_alpha != 0);
             if (kMoves && next.times != nullptr) next.times[slots.path] = path.time;
             if constexpr (LightChoice<kFeatures>::kReadsNormal) next.normals[slots.path] = path.normal;
+            if ((kFeatures & kMedia) != 0 && next.passed != nullptr) next.passed[slots.path] = path.passed;
             if ((kFeatures & kNested) != 0 && next.interiors != nullptr) {
                 next.interiors[slots.path] = path.interior.words();
             }

@@ -22,6 +22,7 @@ struct PathState {
     uint32_t pixel = 0, sample = 0;
     TriangleId start;         // triangle that the ray leaves
     Vec3 normal = {0, 0, 0};  // normal of the context that selected a light there, if LightChoice reads it; else zero
+    float passed = 0;         // metres from where `direction` was sampled to `origin`, straight through thin walls
     uint32_t depth = 0;       // scattering vertices so far
     uint32_t rough_depth = 0; // scatterings so far that were not delta
     float time = kAtRest;     // time of all its rays while the shutter is open

@@ -10,6 +10,7 @@
 #include "device_scene/moved_surface.h"
 #include "device_scene/nested_solids.h"
 #include "device_scene/surface.h"
+#include "device_scene/thin_walls.h"
 #include "integrators/path/medium.h"
 #include "integrators/path/path_listener.h"
 #include "integrators/path/vertex_numbers.h"
@@ -54,7 +55,12 @@ HD inline Rgb emitted_light(const PathSettings& settings, const PathState& path,
 
 /// Returns the context with which next-event estimation selected a light where the ray begins, except for the offset
 /// of the ray's origin.
-HD inline LightContext context_before(const PathState& path) { return {path.origin, path.normal, false, path.time}; }
+template <Features kFeatures>
+HD inline LightContext context_before(const PathState& path) {
+    Vec3 position = path.origin;
+    if constexpr ((kFeatures & kMedia) != 0) position = position - path.passed * path.direction;
+    return {position, path.normal, false, path.time};
+}
 
 /// Adds light that the path's own ray hit.
 template <class Listener>
@@ -69,8 +75,8 @@ HD INLINE_ON_DEVICE void add_background(const PathJob& job, PathState& path, Lis
     const LightSetView& lights = scene_of<kFeatures>(job, path.pixel).lights;
     Rgb light = {0, 0, 0};
     if (lights.has_environment() && !(path.depth == 0 && job.picture.hides_background(path.origin))) {
-        const EnvironmentHit seen =
-            find_environment<LightChoice<kFeatures>>(lights, context_before(path), path.direction, path.bsdf_pdf > 0);
+        const EnvironmentHit seen = find_environment<LightChoice<kFeatures>>(lights, context_before<kFeatures>(path),
+                                                                             path.direction, path.bsdf_pdf > 0);
         if (!listener.removes_emission(path, environment_point(path.direction), seen.pdf)) {
             light = emitted_light(job.settings, path, seen.radiance, seen.pdf);
         }
@@ -87,7 +93,7 @@ HD INLINE_ON_DEVICE void add_surface_emission(const PathJob& job, PathState& pat
         constexpr bool kMoves = (kFeatures & kMoving) != 0;
         const float light_pdf = path.bsdf_pdf > 0
                                     ? pdf_direct<LightChoice<kFeatures>>(scene_of<kFeatures>(job, path.pixel), kMoves,
-                                                                         context_before(path), surface)
+                                                                         context_before<kFeatures>(path), surface)
                                     : 0.0f;
         if (!listener.removes_emission(path, {hit.instance, hit.primitive, hit.u, hit.v}, light_pdf)) {
             light = emitted_light(job.settings, path, surface.emission, light_pdf);
@@ -103,6 +109,12 @@ HD inline InteriorList interior_towards(const SceneView& scene, const PathState&
     return solids_behind(scene, path.interior, vertex.triangle().instance);
 }
 
+/// Returns whether media absorb and scatter light. Code for them also serves scenes that have thin walls alone.
+template <Features kFeatures>
+HD inline bool has_medium(const SceneView& scene) {
+    return !Medium<kFeatures>::kIsVacuum && scene.has_media != 0;
+}
+
 /// Dims the light of a sample by the nested solid that holds the vertex, if media do not, or else by the layers and
 /// coloured solids on the way.
 template <Features kFeatures, class Vertex>
@@ -111,7 +123,7 @@ HD inline void dim_by_solids(const SceneView& scene, const PathState& path, cons
     if constexpr ((kFeatures & kNested) != 0) {
         const InteriorList around = interior_towards(scene, path, vertex, light.wi);
         is_within = around.top() != 0;
-        if (Medium<kFeatures>::kIsVacuum && is_within)
+        if (!has_medium<kFeatures>(scene) && is_within)
             light.radiance = light.radiance * transmittance_within(scene, around, light.distance);
     }
     if constexpr ((kFeatures & kStacked) != 0) {
@@ -151,14 +163,23 @@ HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path
     dim_by_solids<kFeatures>(scene, path, vertex, light);
     Rgb arriving = (weight / light.pdf) * light.radiance;
     const Ray ray = vertex.ray_to(light, kMoves ? emitter_error_at(scene, light, path.time) : 0.0f);
+    uint32_t scatterings = path.depth + 1;
     if constexpr (!Medium<kFeatures>::kIsVacuum) {
-        const InteriorList around = interior_towards(scene, path, vertex, light.wi);
-        const Rgb transmittance = Medium<kFeatures>(scene).transmittance(around, ray);
-        if (is_black(transmittance)) return false;
-        arriving = transmittance * arriving;
+        if (job.passes_thin_walls) {
+            const PassedWalls walls = pass_thin_walls(scene, ray);
+            scatterings += walls.count;
+            // A path that meets the light by itself is scattered by each wall and must not become deeper than allowed.
+            if (is_black(walls.transmittance) || scatterings > settings.max_depth) return false;
+            arriving = walls.transmittance * arriving;
+        }
+        if (has_medium<kFeatures>(scene)) {
+            const InteriorList around = interior_towards(scene, path, vertex, light.wi);
+            const Rgb transmittance = Medium<kFeatures>(scene).transmittance(around, ray);
+            if (is_black(transmittance)) return false;
+            arriving = transmittance * arriving;
+        }
     }
-    shadow.contribution =
-        clamp_contribution(settings, path.depth + 1, weight, path.throughput * scattered.f * arriving);
+    shadow.contribution = clamp_contribution(settings, scatterings, weight, path.throughput * scattered.f * arriving);
     shadow.origin = ray.origin;
     shadow.direction = ray.direction;
     shadow.t_max = ray.t_max;
@@ -225,7 +246,7 @@ HD inline float cone_width(const PathJob& job, const PathState& path, float dist
     const float seen = is_tall ? job.picture.batch.camera_of(path.pixel).pixel_width(distance)
                                : job.picture.camera.pixel_width(distance);
     if (path.depth == 0) return seen;
-    if (path.bsdf_pdf > 0) return max(seen, kShare * distance / sqrt(path.bsdf_pdf));
+    if (path.bsdf_pdf > 0) return max(seen, kShare * (path.passed + distance) / sqrt(path.bsdf_pdf));
     return seen - path.bsdf_pdf;
 }
 
@@ -251,23 +272,43 @@ HD INLINE_ON_DEVICE bool shade_in_medium(const PathJob& job, PathState& path, co
     has_shadow_ray =
         sample_direct<kFeatures>(job, path, vertex, vertex.light_context(path.time), numbers, shadow, listener);
     path.normal = {0, 0, 0};
+    path.passed = 0;
     return sample_scattering(job.settings, path, vertex, numbers, listener) && !has_found_all(job, path);
 }
 
 /// Follows the path to a surface among nested solids: which of them hold it there, what they absorb on the way, and
-/// the surface's interface. Returns whether solids are nested. Without kAbsorbs, media have absorbed already, and with
+/// the surface's interface. Returns whether solids are nested. If `has_flown`, media have absorbed already, and with
 /// them the solids that fill them, but none without a rank.
-template <bool kAbsorbs>
-HD_CALL inline bool reach_nested_solid(const SceneView& scene, PathState& path, const Hit& hit, Surface& surface) {
+HD_CALL inline bool reach_nested_solid(const SceneView& scene, PathState& path, const Hit& hit, Surface& surface,
+                                       bool has_flown) {
     if (!scene.nesting.is_there()) return false;
     const bool enters = dot(path.direction, surface.geometric_normal) < 0;
     path.interior = solids_before(scene, path.interior, hit.instance, enters);
     nest_surface(scene, path.interior, surface);
-    if (!kAbsorbs && path.interior.top() != 0) return true;
+    if (has_flown && path.interior.top() != 0) return true;
     const Rgb passed = transmittance_to_surface(scene, path.interior, path.start, path.direction, hit, path.time);
     path.throughput = path.throughput * passed;
     return true;
 }
+
+/// State of a path before a vertex at which it may go straight through a thin wall.
+struct StraightPass {
+    Vec3 direction, normal;
+    float bsdf_pdf, passed;
+
+    /// Returns whether `path` has gone straight through `surface`.
+    HD bool is_that_of(const PathState& path, const SceneView& scene, const Surface& surface) const {
+        return scene.instances[surface.triangle.instance].is_thin_wall != 0 && !(path.bsdf_pdf > 0) &&
+               !surface.same_side(-direction, path.direction);
+    }
+    /// Lets `path` go on as if there were no wall.
+    HD void restore(PathState& path) const {
+        path.direction = direction;
+        path.normal = normal;
+        path.bsdf_pdf = bsdf_pdf;
+        path.passed = passed;
+    }
+};
 
 /// Shades the result of the path's ray: `hit`, or a miss if hit.instance is kNoHit. Returns whether the path
 /// continues; `has_shadow_ray` says whether `shadow` was written. `numbers` is DrawOnDemand or DrawnNumbers.
@@ -280,7 +321,7 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
     [[maybe_unused]] typename Medium<kFeatures>::Vertex in_medium;
     [[maybe_unused]] bool scatters = false;
     if constexpr (!kIsVacuum) {
-        scatters = Medium<kFeatures>(scene).scatters(job, path, hit, in_medium);
+        scatters = has_medium<kFeatures>(scene) && Medium<kFeatures>(scene).scatters(job, path, hit, in_medium);
         if (scatters && (path.depth > 0 || hit.instance == kNoHit)) {
             listener.missed(path);
             return shade_in_medium<kFeatures>(job, path, in_medium, numbers, shadow, has_shadow_ray, listener);
@@ -301,7 +342,7 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
     }
     bool is_within = false;
     if constexpr ((kFeatures & kNested) != 0) {
-        is_within = reach_nested_solid<kIsVacuum>(scene, path, hit, surface);
+        is_within = reach_nested_solid(scene, path, hit, surface, has_medium<kFeatures>(scene));
     }
     if constexpr ((kFeatures & kStacked) != 0) {
         if (!is_within) {
@@ -317,8 +358,14 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
     const LightContext context = vertex.light_context(path.time);
     has_shadow_ray = listener.samples_direct(path, hit, surface) &&
                      sample_direct<kFeatures>(job, path, vertex, context, numbers, shadow, listener);
+    const StraightPass straight = {path.direction, path.normal, path.bsdf_pdf, path.passed + hit.t};
     if constexpr (LightChoice<kFeatures>::kReadsNormal) path.normal = context.normal;
-    const bool goes_on = sample_scattering(job.settings, path, vertex, numbers, listener) && !has_found_all(job, path);
+    bool goes_on = sample_scattering(job.settings, path, vertex, numbers, listener);
+    if constexpr (!kIsVacuum) {
+        path.passed = 0;
+        if (job.passes_thin_walls && straight.is_that_of(path, scene, surface)) straight.restore(path);
+    }
+    goes_on = goes_on && !has_found_all(job, path);
     if constexpr ((kFeatures & kNested) != 0) path.interior = interior_towards(scene, path, vertex, path.direction);
     if ((kFeatures & kMipMapped) != 0 && !(path.bsdf_pdf > 0)) path.bsdf_pdf = -width;
     return goes_on;
