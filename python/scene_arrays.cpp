@@ -120,9 +120,10 @@ Material material_of(ArgumentFields& fields, std::vector<TextureImage>& images) 
             if (!array) return;
             texture.image = static_cast<int32_t>(images.size());
             const std::string_view slot = name;
-            texture.is_srgb = array->is_uint8() && (slot == "base_color_texture" || slot == "emission_texture" ||
-                                                    slot == "specular_color_texture" || slot == "fuzz_color_texture" ||
-                                                    slot == "diffuse_transmission_color_texture");
+            texture.is_srgb =
+                array->is_uint8() && (slot == "base_color_texture" || slot == "emission_texture" ||
+                                      slot == "specular_color_texture" || slot == "fuzz_color_texture" ||
+                                      slot == "coat_color_texture" || slot == "diffuse_transmission_color_texture");
             images.push_back(image_of(*array));
             images.back().name = fields.path_of(name);
         });

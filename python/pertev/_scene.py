@@ -66,11 +66,11 @@ class Scene(_core.Scene):
     materials    kind "metallic_roughness" (default), "diffuse", "conductor", "dielectric" or "unlit", or a measured metal
                  such as metal="gold"; numbers and
                  colours as scene.params has them; textures of (height, width), or with 1, 3 or 4 channels, uint8 or float:
-                 base_color_texture, emission_texture, specular_color_texture, fuzz_color_texture,
+                 base_color_texture, emission_texture, specular_color_texture, coat_color_texture, fuzz_color_texture,
                  diffuse_transmission_color_texture (uint8: sRGB),
                  metallic_texture, roughness_texture, normal_texture, alpha_texture, transmission_texture,
                  specular_texture, coat_texture, coat_roughness_texture, coat_normal_texture, fuzz_roughness_texture,
-                 anisotropy_texture, thin_film_texture, thin_film_thickness_texture, diffuse_transmission_texture;
+                 anisotropy_texture, coat_anisotropy_texture, thin_film_texture, thin_film_thickness_texture, diffuse_transmission_texture;
                  alpha_mode, metal_fresnel, microfacet_distribution, energy, fuzz_model; double_sided, two_sided_emission, thin_walled,
                  has_relative_ior
     lights       kind "point", "spot" or "directional"; intensity, position, direction or transform, range; inner_cone and

@@ -50,8 +50,7 @@ HD inline float textured_share(const SceneView& scene, const MeshView& mesh, flo
 /// Directions of a material at a point, in the shading frame.
 struct MaterialAxes {
     Vec3 coat_normal = {0, 0, 1}; // unit
-    Vec2 along = {1, 0};          // unit, the direction in which highlights are stretched
-    float anisotropy = 0;         // [0, 1]
+    Stretch stretch, coat_stretch;
 };
 struct NoMaterialAxes {}; // materials without stacks have none
 template <ShadingVariant kVariant>
@@ -98,8 +97,8 @@ HD_CALL inline void build_any_bsdf(Bsdf& bsdf, const SceneView& scene, const Mat
     ReflectionParameters reflection = {.base_color = base_color,
                                        .roughness = roughness,
                                        .ior = material.ior,
-                                       .anisotropy = axes.anisotropy,
-                                       .along = axes.along,
+                                       .anisotropy = axes.stretch.anisotropy,
+                                       .along = axes.stretch.along,
                                        .diffuse_roughness = material.base_diffuse_roughness,
                                        .dispersion = material.dispersion()};
     reflection.is_beckmann = material.microfacet_distribution == MicrofacetDistribution::Beckmann;
@@ -164,7 +163,8 @@ HD_CALL inline void build_any_bsdf(Bsdf& bsdf, const SceneView& scene, const Mat
         const float weight = number(material.coat_weight, material.coat_texture);
         const float coat_roughness = number(material.coat_roughness, material.coat_roughness_texture);
         if (weight > 0) {
-            add_coat(bsdf, weight, coat_roughness, material.coat_ior, axes.coat_normal, material.coat_color);
+            const Rgb color = textured_color(scene, mesh, material.coat_color, material.coat_color_texture, i, u, v);
+            add_coat(bsdf, weight, coat_roughness, material.coat_ior, axes.coat_normal, color, axes.coat_stretch);
         }
     }
 }

@@ -267,29 +267,36 @@ HD_CALL inline Vec3 coat_normal(const SceneView& scene, const InstanceView& inst
     return bent.z > 0 ? normalize(bent) : Vec3{0, 0, 1};
 }
 
-/// Sets the direction and strength of anisotropy, in the shading frame `frame` (KHR_materials_anisotropy). The tangent
-/// is the normal map's, or without one that of the anisotropy's own texture.
-HD_CALL inline void set_anisotropy(const SceneView& scene, const InstanceView& instance, const MeshView& mesh,
-                                   const MaterialParameters& material, const WorldTriangle& triangle, const Hit& hit,
-                                   const Frame& frame, MaterialAxes& axes) {
-    const TextureRef& own = material.anisotropy_texture;
-    const TextureRef& map = material.normal_texture.has_image() ? material.normal_texture : own;
-    const Frame tangents = tangent_frame(instance, mesh, triangle, hit, frame.normal, map);
-    axes.anisotropy = material.specular_roughness_anisotropy;
+/// Parameters of a material by which its reflection, or its coat, is stretched.
+struct StretchParameters {
+    float anisotropy, rotation;
+    const TextureRef &own, &normal_map;
+};
+
+/// Returns the direction and strength of anisotropy, in the shading frame `frame` (KHR_materials_anisotropy). The
+/// tangent is the normal map's, or without one that of the anisotropy's own texture.
+HD_CALL inline Stretch stretch_at(const SceneView& scene, const InstanceView& instance, const MeshView& mesh,
+                                  const StretchParameters& of, const WorldTriangle& triangle, const Hit& hit,
+                                  const Frame& frame) {
+    const TextureRef& own = of.own;
+    const Frame tangents =
+        tangent_frame(instance, mesh, triangle, hit, frame.normal, of.normal_map.has_image() ? of.normal_map : own);
+    Stretch stretch = {{1, 0}, of.anisotropy};
     Vec2 turn = {1, 0};
     if (own.has_image()) {
         const Vec4 texel = texel_at(scene, mesh, own, triangle.i, hit.u, hit.v);
         turn = {2.0f * texel.x - 1.0f, 2.0f * texel.y - 1.0f};
-        axes.anisotropy *= clamp(texel.z, 0.0f, 1.0f);
+        stretch.anisotropy *= clamp(texel.z, 0.0f, 1.0f);
     }
     float sine, cosine;
-    sin_cos(material.anisotropy_rotation, sine, cosine);
+    sin_cos(of.rotation, sine, cosine);
     const Vec3 local = frame.to_local((cosine * turn.x - sine * turn.y) * tangents.tangent +
                                       (sine * turn.x + cosine * turn.y) * tangents.bitangent);
     const float size2 = local.x * local.x + local.y * local.y;
-    if (!(size2 > 1e-12f)) return;
+    if (!(size2 > 1e-12f)) return stretch;
     const float inv = 1.0f / sqrt(size2);
-    axes.along = {inv * local.x, inv * local.y};
+    stretch.along = {inv * local.x, inv * local.y};
+    return stretch;
 }
 
 /// Area of a cone of `width` metres where it meets a triangle, in twice the triangle's (TriangleIndices); 0 for a
@@ -323,7 +330,15 @@ HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 dire
             axes.coat_normal =
                 coat_normal(scene, instance, mesh, material, triangle, hit, geometric_normal, -direction, frame);
         }
-        if (material.has_anisotropy()) set_anisotropy(scene, instance, mesh, material, triangle, hit, frame, axes);
+        const auto stretch_of = [&](const StretchParameters& of) {
+            return stretch_at(scene, instance, mesh, of, triangle, hit, frame);
+        };
+        if (material.has_anisotropy())
+            axes.stretch = stretch_of({material.specular_roughness_anisotropy, material.anisotropy_rotation,
+                                       material.anisotropy_texture, material.normal_texture});
+        if (material.has_coat_anisotropy())
+            axes.coat_stretch = stretch_of({material.coat_roughness_anisotropy, material.coat_anisotropy_rotation,
+                                            material.coat_anisotropy_texture, material.coat_normal_texture});
     }
     const bool is_unlit = material.is_unlit();
     Rgb emission = {};

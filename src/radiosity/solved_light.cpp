@@ -66,6 +66,7 @@ public:
             if (!(material.coat_color == Rgb{1, 1, 1})) add_bytes(hasher_, material.coat_color);
             add(material.coat_texture);
             add(material.coat_roughness_texture);
+            if (material.coat_color_texture.has_image()) add(material.coat_color_texture);
         }
         hasher_.add_value(static_cast<uint32_t>(material.is_emitter()));
         if (material.is_emitter()) {

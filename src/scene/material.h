@@ -87,7 +87,10 @@ struct MaterialParameters {
     Rgb specular_color = {1, 1, 1};   // factor on that at normal incidence, >= 0; multiplied by the texture; with F82
                                       // also the metal's tint, at most 1
     float coat_weight = 0, coat_roughness = 0, coat_ior = 1.5f, coat_normal_scale = 1;
-    Rgb coat_color = {1, 1, 1}; // [0, 1], what both ways through the coat leave at normal incidence
+    Rgb coat_color = {1, 1, 1}; // [0, 1], what both ways through the coat leave at normal incidence; multiplied by the
+                                // texture
+    // In the same units as those of the reflection:
+    float coat_roughness_anisotropy = 0, coat_anisotropy_rotation = 0;
     float fuzz_weight = 0, fuzz_roughness = 0.5f;
     Rgb fuzz_color = {1, 1, 1};         // [0, 1], multiplied by the texture
     Rgb transmission_color = {1, 1, 1}; // [0, 1], what a solid transmits over transmission_depth
@@ -103,7 +106,8 @@ struct MaterialParameters {
     float diffuse_transmission_weight = 0;      // [0, 1], of the diffuse light, which leaves on the other side
     Rgb diffuse_transmission_color = {1, 1, 1}; // [0, 1], multiplied by the texture
     TextureRef transmission_texture, specular_texture, specular_color_texture;
-    TextureRef coat_texture, coat_roughness_texture, coat_normal_texture; // without the last the coat is not bent
+    TextureRef coat_texture, coat_roughness_texture, coat_color_texture, coat_anisotropy_texture;
+    TextureRef coat_normal_texture; // without it the coat is not bent
     TextureRef fuzz_color_texture, fuzz_roughness_texture;
     TextureRef anisotropy_texture, thin_film_texture, thin_film_thickness_texture;
     TextureRef diffuse_transmission_texture, diffuse_transmission_color_texture, retroreflectivity_texture;
@@ -130,6 +134,7 @@ struct MaterialParameters {
     }
     HD bool has_microfacets() const { return kind != MaterialKind::Diffuse && !is_unlit(); }
     HD bool has_anisotropy() const { return has_microfacets() && specular_roughness_anisotropy > 0; }
+    HD bool has_coat_anisotropy() const { return has_coat() && coat_roughness_anisotropy > 0; }
     /// Returns whether the material has other microfacets than most materials, for which there is faster code.
     HD bool has_other_microfacets() const {
         return has_microfacets() &&
@@ -209,6 +214,8 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
     number(m.coat_ior, "coat_ior", 1, 0x1p10f);
     color(m.coat_color, "coat_color", 0, 1);
     number(m.coat_normal_scale, "coat_normal_scale", -0x1p10f, 0x1p10f);
+    number(m.coat_roughness_anisotropy, "coat_roughness_anisotropy", 0, 1);
+    number(m.coat_anisotropy_rotation, "coat_anisotropy_rotation", -0x1p10f, 0x1p10f);
     number(m.fuzz_weight, "fuzz_weight", 0, 1);
     number(m.fuzz_roughness, "fuzz_roughness", 0, 1);
     color(m.fuzz_color, "fuzz_color", 0, 1);
@@ -240,6 +247,8 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
     texture(m.specular_color_texture, "specular_color_texture");
     texture(m.coat_texture, "coat_texture");
     texture(m.coat_roughness_texture, "coat_roughness_texture");
+    texture(m.coat_color_texture, "coat_color_texture");
+    texture(m.coat_anisotropy_texture, "coat_anisotropy_texture");
     texture(m.coat_normal_texture, "coat_normal_texture");
     texture(m.fuzz_color_texture, "fuzz_color_texture");
     texture(m.fuzz_roughness_texture, "fuzz_roughness_texture");

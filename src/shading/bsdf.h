@@ -47,6 +47,7 @@ struct Bsdf {
     HD void add(const SpecularLobe& lobe) { stack(lobe); }
     HD void add(const FilmedLobe& lobe) { stack(lobe); }
     HD void add(const RetroLobe& lobe) { stack(lobe); }
+    HD void add(const FilmedRetroLobe& lobe) { stack(lobe); }
     HD void add(const ThinLobe& lobe) { stack_far(lobe); }
     HD void add(const TranslucentLobe& lobe) { stack_far(lobe); }
     HD void add(const GlassLobe& lobe) { stack_far(lobe); }
@@ -283,8 +284,10 @@ HD inline Bsdf make_metallic_roughness(Rgb base_color, float metallic, float rou
 /// Adds a clear coat to `bsdf`, which has at most kMaxLayers - 1 layers: `strength` and `roughness` in [0, 1], `ior`
 /// >= 1 (1.5 in KHR_materials_clearcoat), `normal` unit with z > 0 in the frame of `bsdf`, `color` in [0, 1]: the share
 /// of light that both ways through the coat leave at normal incidence.
-HD inline void add_coat(Bsdf& bsdf, float strength, float roughness, float ior, Vec3 normal, Rgb color) {
+HD inline void add_coat(Bsdf& bsdf, float strength, float roughness, float ior, Vec3 normal, Rgb color,
+                        Stretch stretch = {}) {
     CoatLobe coat = {strength, alpha_from_roughness(roughness), f0_from_ior(ior), normal};
+    coat.set_stretch(stretch);
     if (!(color == Rgb{1, 1, 1})) {
         coat.color_rg = UnitPair(color.r, color.g);
         coat.color_b_and_solid = UnitPair(color.b, bsdf.inner_ior() != 1 ? 1.0f : 0.0f);
@@ -303,8 +306,8 @@ HD inline void add_fuzz(Bsdf& bsdf, Rgb color, float roughness) {
 
 /// Returns copies of `bsdf` with a layer of these functions.
 HD inline Bsdf make_coated(Bsdf bsdf, float strength, float roughness, float ior, Vec3 normal = {0, 0, 1},
-                           Rgb color = {1, 1, 1}) {
-    add_coat(bsdf, strength, roughness, ior, normal, color);
+                           Rgb color = {1, 1, 1}, Stretch stretch = {}) {
+    add_coat(bsdf, strength, roughness, ior, normal, color, stretch);
     return bsdf;
 }
 HD inline Bsdf make_sheen(Bsdf bsdf, Rgb color, float roughness) {

@@ -256,10 +256,12 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
         surface.coat_color = material.coat_color;
         surface.coat_f0 = f0_from_ior(material.coat_ior);
         const uint8_t set = material.emission_texture.uv_set; // triangles of emitters have no other
-        if (material.coat_texture.uv_set == set) surface.coat_texture = material.coat_texture;
-        if (material.coat_roughness_texture.uv_set == set) {
-            surface.coat_roughness_texture = material.coat_roughness_texture;
-        }
+        const auto use = [&](const TextureRef& from, TextureRef& to) {
+            if (from.uv_set == set) to = from;
+        };
+        use(material.coat_texture, surface.coat_texture);
+        use(material.coat_roughness_texture, surface.coat_roughness_texture);
+        use(material.coat_color_texture, surface.coat_color_texture);
     }
     add_triangles(scene, centre, data);
     add_punctual_lights(scene, centre, data);

@@ -71,8 +71,8 @@ struct SurfaceEmission {
     TextureRef texture;
     float coat_weight = 0, coat_roughness = 0, coat_f0 = 0;
     Rgb coat_color = {1, 1, 1};
-    TextureRef coat_texture = {},
-               coat_roughness_texture = {}; // kNoImage if their coordinates differ from those of `texture`
+    // kNoImage if their coordinates differ from those of `texture`:
+    TextureRef coat_texture = {}, coat_roughness_texture = {}, coat_color_texture = {};
 };
 
 /// Kinds of light that are sampled, found and emitted in different ways.
@@ -165,9 +165,14 @@ HD_CALL inline Rgb coat_transmittance(const LightSetView& view, const SurfaceEmi
     const SchlickLobe coat = {grey(0), 0, square(roughness), surface.coat_f0};
     const float albedo = coat.albedo_at(min(cosine, 1.0f), coat.make_average()).coat;
     const float weight = textured(surface.coat_weight, surface.coat_texture), passed = 1.0f - weight * albedo;
-    if (surface.coat_color == Rgb{1, 1, 1}) return grey(passed);
+    Rgb color = surface.coat_color;
+    if (const TextureRef& ref = surface.coat_color_texture; ref.has_image()) {
+        const Vec4 texel = lookup_texture(view.images, ref, uv, view.linear_from_srgb);
+        color = color * Rgb{texel.x, texel.y, texel.z};
+    }
+    if (color == Rgb{1, 1, 1}) return grey(passed);
     const float length = length_in_coat(min(cosine, 1.0f), surface.coat_f0);
-    return passed * coat_tint(surface.coat_color, weight, 0.5f * length, albedo);
+    return passed * coat_tint(color, weight, 0.5f * length, albedo);
 }
 
 /// Radiance that leaves a surface of `material` at `uv` along or against the unit `direction`; `normal` is the

@@ -34,6 +34,7 @@ enum class LobeKind : uint8_t {
     Specular,     // layer on a base that is diffuse or None, and on Thin and Translucent
     Filmed,       // layer as Specular, with a film or stretched
     Retro,        // layer as Specular, sends a share back
+    FilmedRetro,  // layer as Retro, of any microfacets
     Thin,         // layer on a base that is diffuse or None
     Translucent,  // layer on a base that is diffuse or None, and on Thin
     Glass,        // layer on anything
@@ -56,6 +57,7 @@ struct Lobe {
         SpecularLobe reflection;
         PackedFilmedLobe filmed;
         PackedRetroLobe retro;
+        PackedFilmedRetroLobe filmed_retro;
         ThinLobe thin;
         TranslucentLobe translucent;
         PackedGlassLobe glass;
@@ -74,6 +76,7 @@ struct Lobe {
     HD Lobe(const SpecularLobe& lobe) : kind(LobeKind::Specular), beneath(0), reflection(lobe) {}
     HD Lobe(const FilmedLobe& lobe) : kind(LobeKind::Filmed), beneath(0), filmed(lobe) {}
     HD Lobe(const RetroLobe& lobe) : kind(LobeKind::Retro), beneath(0), retro(lobe) {}
+    HD Lobe(const FilmedRetroLobe& lobe) : kind(LobeKind::FilmedRetro), beneath(0), filmed_retro(lobe) {}
     HD Lobe(const ThinLobe& lobe) : kind(LobeKind::Thin), beneath(0), thin(lobe) {}
     HD Lobe(const TranslucentLobe& lobe) : kind(LobeKind::Translucent), beneath(0), translucent(lobe) {}
     HD Lobe(const GlassLobe& lobe) : kind(LobeKind::Glass), beneath(0), glass(lobe) {}
@@ -102,6 +105,7 @@ struct Lobe {
         case LobeKind::Filmed:
             return filmed.unpacked().lobe_class();
         case LobeKind::Retro:
+        case LobeKind::FilmedRetro:
             return LobeClass::Glossy;
         case LobeKind::Thin:
             return thin.lobe_class();
@@ -140,6 +144,8 @@ struct Lobe {
             return filmed.unpacked().energy();
         case LobeKind::Retro:
             return retro.unpacked().energy();
+        case LobeKind::FilmedRetro:
+            return filmed_retro.unpacked().energy();
         case LobeKind::Thin:
             return thin.energy();
         case LobeKind::Translucent:
@@ -178,6 +184,8 @@ struct Lobe {
             return filmed.unpacked().gloss(cos_o);
         case LobeKind::Retro:
             return retro.unpacked().gloss(cos_o);
+        case LobeKind::FilmedRetro:
+            return filmed_retro.unpacked().gloss(cos_o);
         case LobeKind::Thin:
             return thin.gloss(cos_o);
         case LobeKind::Glass:
@@ -193,6 +201,7 @@ struct Lobe {
         case LobeKind::Diffuse:
         case LobeKind::RoughDiffuse:
         case LobeKind::Retro:
+        case LobeKind::FilmedRetro:
         case LobeKind::Translucent:
         case LobeKind::Sheen:
         case LobeKind::Fuzz:
@@ -241,6 +250,8 @@ struct Lobe {
             return filmed.unpacked().evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Retro:
             return retro.unpacked().evaluate(wo, wi, beneath, transmittance);
+        case LobeKind::FilmedRetro:
+            return filmed_retro.unpacked().evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Thin:
             return thin.evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Translucent:
@@ -278,6 +289,8 @@ struct Lobe {
             return filmed.unpacked().draw(wo, beneath, u_lobe, u);
         case LobeKind::Retro:
             return retro.unpacked().draw(wo, beneath, u_lobe, u);
+        case LobeKind::FilmedRetro:
+            return filmed_retro.unpacked().draw(wo, beneath, u_lobe, u);
         case LobeKind::Thin:
             return thin.draw(wo, beneath, u_lobe, u);
         case LobeKind::Translucent:

@@ -24,15 +24,19 @@ struct ReflectionParameters {
     float diffuse_roughness = 0; // [0, 1]
     float dispersion = 0;        // reciprocal of Abbe's number, >= 0
     Rgb metal_tint = {1, 1, 1};  // [0, 1], F82 tint of the metal
-    float retroreflectivity = 0; // [0, 1], of the reflection; then it is of GGX, even, and without a film or tint
+    float retroreflectivity = 0; // [0, 1], of the reflection; then it has no film
     bool is_beckmann = false, is_single = false;
 
     HD bool has_plain_microfacets() const { return !(anisotropy > 0) && !is_beckmann && !is_single; }
     HD bool is_clear() const { return is_plain() && !(dispersion > 0); }
     HD bool is_plain() const { return has_plain_microfacets() && !(film.weight > 0); }
     HD bool is_tinted() const { return metallic > 0 && !(metal_tint == Rgb{1, 1, 1}); }
-    HD Microfacets microfacets() const {
-        Microfacets widths = anisotropic_widths(alpha_from_roughness(roughness), anisotropy, along);
+    HD Microfacets microfacets() const { return microfacets_of(alpha_from_roughness(roughness)); }
+    HD Microfacets rough_microfacets() const {
+        return microfacets_of(max(alpha_from_roughness(roughness), kSmoothAlpha));
+    }
+    HD Microfacets microfacets_of(float alpha) const {
+        Microfacets widths = anisotropic_widths(alpha, anisotropy, along);
         widths.is_beckmann = is_beckmann;
         widths.is_single = is_single;
         return widths;
@@ -57,8 +61,12 @@ HD_CALL inline void add_reflection(Bsdf& bsdf, const ReflectionParameters& p, fl
     const Rgb own = f0_from_ior(p.ior) * p.color;
     const Rgb f0 = p.weight * Rgb{min(own.r, 1.0f), min(own.g, 1.0f), min(own.b, 1.0f)};
     if (p.retroreflectivity > 0) {
-        const float alpha = max(alpha_from_roughness(p.roughness), kSmoothAlpha);
-        return bsdf.add(RetroLobe{{p.base_color, metal, alpha, f0, p.weight}, p.retroreflectivity});
+        if (p.has_plain_microfacets() && !p.is_tinted()) {
+            const float alpha = max(alpha_from_roughness(p.roughness), kSmoothAlpha);
+            return bsdf.add(RetroLobe{{p.base_color, metal, alpha, f0, p.weight}, p.retroreflectivity});
+        }
+        const FilmedLobe all = {p.base_color, metal, p.rough_microfacets(), f0, p.weight, {}, p.metal_tint};
+        return bsdf.add(FilmedRetroLobe{all, p.retroreflectivity});
     }
     if (p.is_plain() && !p.is_tinted()) {
         return bsdf.add(SpecularLobe{p.base_color, metal, alpha_from_roughness(p.roughness), f0, p.weight});
@@ -89,7 +97,7 @@ HD_CALL inline void build_reflection(Bsdf& bsdf, const ReflectionParameters& p) 
                                        : Bsdf(DiffuseLobe{p.base_color, diffuse});
     }
     if (through > 0 && !is_black(p.base_color)) {
-        bsdf.add(ThinLobe{p.base_color, through, alpha_from_roughness(p.roughness)});
+        bsdf.add(ThinLobe{p.base_color, through, p.microfacets()});
     }
     if (far > 0 && !is_black(p.translucent_color)) bsdf.add(TranslucentLobe{p.translucent_color, far});
     add_reflection(bsdf, p, metal);

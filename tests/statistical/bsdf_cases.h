@@ -30,8 +30,10 @@ inline float narrowest_alpha(const Bsdf& bsdf) {
         if (bsdf.layers[i].kind == LobeKind::Schlick) add(bsdf.layers[i].schlick.alpha);
         if (bsdf.layers[i].kind == LobeKind::Coat) add(bsdf.layers[i].coat.alpha);
         if (bsdf.layers[i].kind == LobeKind::Specular) add(bsdf.layers[i].reflection.alpha);
-        if (bsdf.layers[i].kind == LobeKind::Thin) add(bsdf.layers[i].thin.alpha);
+        if (bsdf.layers[i].kind == LobeKind::Thin) add(bsdf.layers[i].thin.widths.narrowest());
         if (bsdf.layers[i].kind == LobeKind::Retro) add(bsdf.layers[i].retro.alpha);
+        if (bsdf.layers[i].kind == LobeKind::FilmedRetro)
+            add(bsdf.layers[i].filmed_retro.unpacked().lobe.widths.narrowest());
         if (bsdf.layers[i].kind == LobeKind::Filmed) add(bsdf.layers[i].filmed.unpacked().widths.narrowest());
         if (bsdf.layers[i].kind == LobeKind::Glass) add(bsdf.layers[i].glass.unpacked().widths.narrowest());
     }
@@ -66,6 +68,30 @@ inline std::vector<BsdfCase> openpbr_bsdf_cases() {
                                                      normalize(Vec3{0.2f, 0.1f, 1}), {0.2f, 0.9f, 0.6f})},
         {"tinted varnish on glass",
          make_coated(make_dielectric(1.5f, 0.5f, grey(1)), 0.7f, 0.6f, 1.5f, {0, 0, 1}, {0.2f, 0.9f, 0.6f})},
+        {"brushed varnish on plastic", make_coated(make_metallic_roughness({0.2f, 0.5f, 0.8f}, 0, 0.6f, 1.5f), 1, 0.35f,
+                                                   1.5f, {0, 0, 1}, grey(1), {{0.6f, 0.8f}, 0.7f})},
+        {"brushed, tinted, bent varnish on rough gold",
+         make_coated(make_conductor(kGoldEta, kGoldK, 0.5f), 0.7f, 0.4f, 1.8f, normalize(Vec3{0.2f, 0.1f, 1}),
+                     {0.2f, 0.9f, 0.6f}, {{-0.8f, 0.6f}, 0.5f})},
+        {"brushed frosted pane", make_reflection({.base_color = {0.9f, 0.6f, 0.2f},
+                                                  .roughness = 0.5f,
+                                                  .through = 0.7f,
+                                                  .anisotropy = 0.6f,
+                                                  .along = {0.6f, 0.8f}})},
+        {"frosted pane of Beckmann and one bounce", make_reflection({.base_color = {0.9f, 0.6f, 0.2f},
+                                                                     .roughness = 0.6f,
+                                                                     .through = 1,
+                                                                     .is_beckmann = true,
+                                                                     .is_single = true})},
+        {"brushed metal of Beckmann that sends half of the light back",
+         make_reflection({.base_color = {0.9f, 0.5f, 0.1f},
+                          .metallic = 0.5f,
+                          .roughness = 0.5f,
+                          .anisotropy = 0.6f,
+                          .along = {0.6f, -0.8f},
+                          .metal_tint = {0.2f, 0.6f, 1},
+                          .retroreflectivity = 0.5f,
+                          .is_beckmann = true})},
         {"F82 metal",
          make_reflection(
              {.base_color = {0.9f, 0.5f, 0.1f}, .metallic = 1, .roughness = 0.4f, .metal_tint = {0.2f, 0.6f, 1}})},

@@ -1,93 +1,16 @@
-// BSDFs, textures, spectra and emitters of Mitsuba's scenes.
+// BSDFs, spectra and emitters of Mitsuba's scenes.
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
 #include "formats/described/make_surface.h"
 #include "formats/mitsuba/bsdfs.h"
-#include "formats/read_scene.h"
-#include "image/srgb.h"
-#include "image/write_image.h"
-#include "image/write_png.h"
-#include "math/portable_math.h"
 #include "scene/metals.h"
-#include "tests/support/options.h"
+#include "tests/support/mitsuba_materials.h"
 #include "tests/support/thrown_error.h"
-#include "tests/support/write_text.h"
 
-namespace fs = std::filesystem;
 using namespace pertev;
-
-namespace {
-
-struct MitsubaMaterial {
-    Scene scene;
-    Material material;
-    Messages messages;
-};
-
-/// Reads a file whose only shape is a square with the BSDF `bsdf`, in a folder with the pictures a.exr (two pixels of
-/// 0.25 and 0.5), a.png (one of 128) and veil.png (one of 128 with alpha 51).
-MitsubaMaterial load_bsdf(const std::string& bsdf, const std::string& version = "3.0.0") {
-    const fs::path folder = test::scratch_folder();
-    write_image(folder / "a.exr",
-                Image{.width = 2, .height = 1, .channels = 3, .pixels = {0.25f, 0.25f, 0.25f, 0.5f, 0.5f, 0.5f}});
-    const float linear = srgb_decode(128 / 255.0f);
-    write_image(folder / "a.png", Image{.width = 1, .height = 1, .channels = 3, .pixels = {linear, linear, linear}});
-    write_png(folder / "veil.png", Rgba8Image{1, 1, {128, 128, 128, 51}}, true);
-    test::write_text(folder / "a.spd", "# nm value\n400 .2\n500 .8\n600 .1\n700 .4\n");
-    MitsubaMaterial read;
-    read.scene =
-        read_scene(test::write_text(folder / "scene.xml",
-                                    fmt::format("<scene version=\"{}\"><shape type=\"rectangle\">{}</shape></scene>",
-                                                version, bsdf)),
-                   {}, read.messages);
-    if (!read.scene.instances.empty()) read.material = read.scene.materials[read.scene.instances[0].material];
-    return read;
-}
-Material mitsuba_material(const std::string& bsdf, const std::string& version = "3.0.0") {
-    const MitsubaMaterial read = load_bsdf(bsdf, version);
-    CHECK(read.messages.left_out() == std::vector<std::string>{});
-    return read.material;
-}
-std::string bsdf_of(const std::string& type, const std::string& inner = "") {
-    return fmt::format("<bsdf type=\"{}\">{}</bsdf>", type, inner);
-}
-std::string number_of(const char* name, double value) {
-    return fmt::format("<float name=\"{}\" value=\"{}\"/>", name, value);
-}
-std::string rgb_of(const char* name, const char* value) {
-    return fmt::format("<rgb name=\"{}\" value=\"{}\"/>", name, value);
-}
-std::string string_of(const char* name, const char* value) {
-    return fmt::format("<string name=\"{}\" value=\"{}\"/>", name, value);
-}
-std::string bitmap_of(const char* name, const std::string& inner, const char* file = "a.exr") {
-    return fmt::format("<texture name=\"{}\" type=\"bitmap\">{}{}</texture>", name, string_of("filename", file), inner);
-}
-
-void check_mitsuba_color(Rgb color, Rgb wanted, double epsilon = 2e-3) {
-    CHECK(color.r == doctest::Approx(wanted.r).epsilon(epsilon));
-    CHECK(color.g == doctest::Approx(wanted.g).epsilon(epsilon));
-    CHECK(color.b == doctest::Approx(wanted.b).epsilon(epsilon));
-}
-Rgb mitsuba_reflectance(const std::string& value, const char* version = "3.0.0") {
-    return mitsuba_material(bsdf_of("diffuse", value), version).base_color;
-}
-Rgb mitsuba_radiance(const std::string& value, const char* version = "3.0.0") {
-    return mitsuba_material("<emitter type=\"area\">" + value + "</emitter>", version).emission;
-}
-
-/// The nearest texel of a texture at coordinates of Mitsuba.
-float mitsuba_texel(const MitsubaMaterial& read, const TextureRef& ref, float u, float v) {
-    const Image& image = read.scene.images.at(static_cast<std::size_t>(ref.image)).rgba_float;
-    const float x = ref.m00 * u + ref.m01 * v + ref.m02, y = ref.m10 * u + ref.m11 * v + ref.m12;
-    const auto column = static_cast<uint32_t>((x - floor(x)) * float(image.width)),
-               row = static_cast<uint32_t>((y - floor(y)) * float(image.height));
-    return image.pixels.at(4 * (std::size_t(row) * image.width + column));
-}
-
-} // namespace
+using namespace pertev::test;
 
 TEST_CASE("mitsuba: reflectances have their colours under D65") {
     check_mitsuba_color(mitsuba_reflectance(rgb_of("reflectance", ".1, .2, .3")), {0.1f, 0.2f, 0.3f});
@@ -281,6 +204,19 @@ TEST_CASE("mitsuba: phong, ward, roughdiffuse and coating are the nearest, with 
         bsdf_of("coating", number_of("intIOR", 1.4) + number_of("extIOR", 1) + bsdf_of("diffuse")), "0.6.0");
     CHECK(coated.coat_weight == 1);
     CHECK(coated.coat_ior == 1.4f);
+    CHECK(coated.coat_color == Rgb{1, 1, 1});
+    const MitsubaMaterial tinted = load_bsdf(
+        bsdf_of("roughcoating", number_of("alpha_u", 0.4) + number_of("alpha_v", 0.1) + number_of("thickness", 0.5) +
+                                    rgb_of("sigma_a", "0 .5 2") + bsdf_of("roughconductor", number_of("alpha", 0.2))),
+        "0.6.0");
+    CHECK(tinted.messages.left_out() == std::vector<std::string>{});
+    const Material& coat = tinted.material;
+    CHECK(coat.coat_color.r == 1); // both ways of 0.5 each
+    CHECK(coat.coat_color.g == doctest::Approx(std::exp(-0.5)));
+    CHECK(coat.coat_color.b == doctest::Approx(std::exp(-2.0)));
+    CHECK(coat.coat_roughness == doctest::Approx(std::sqrt(0.1)));
+    CHECK(coat.coat_roughness_anisotropy == doctest::Approx(std::sqrt(0.3 / 0.9)));
+    CHECK(!coat.has_anisotropy());
 }
 
 TEST_CASE("mitsuba: principled has its parameters") {
@@ -327,86 +263,6 @@ TEST_CASE("mitsuba: twosided, mask, null and mixtures") {
     CHECK(load_bsdf(bsdf_of("mixturebsdf", string_of("weights", ".5") + red + blue)).messages.left_out().size() == 1);
     const std::string dark = bsdf_of("mixturebsdf", string_of("weights", ".5 .25") + red + blue); // the rest is lost
     check_mitsuba_color(mitsuba_material(dark, "0.6.0").base_color, {0.5f, 0, 0.25f});
-}
-
-TEST_CASE("mitsuba: bitmaps have wraps, filters, places and encodings") {
-    const MitsubaMaterial read = load_bsdf(
-        bsdf_of("diffuse",
-                bitmap_of("reflectance",
-                          string_of("filter_type", "nearest") + string_of("wrap_mode", "mirror") +
-                              "<transform name=\"to_uv\"><scale x=\"2\" y=\"3\"/><translate x=\".5\"/></transform>")));
-    const TextureRef& ref = read.material.base_color_texture;
-    CHECK(ref.filter == TextureFilter::Nearest);
-    CHECK(ref.wrap_s == Wrap::MirroredRepeat);
-    CHECK(ref.m00 == 2);
-    CHECK(ref.m11 == 3);
-    CHECK(ref.m02 == 0.5f);
-    CHECK(read.material.base_color == grey(1));
-    // The first row of a picture has v = 0.
-    CHECK(mitsuba_texel(load_bsdf(bsdf_of("diffuse", bitmap_of("reflectance", ""))), TextureRef{.image = 0}, 0.25f,
-                        0.1f) == 0.25f);
-    const Material old = mitsuba_material(
-        bsdf_of("diffuse", bitmap_of("reflectance", number_of("uscale", 4) + number_of("voffset", 0.25))), "0.6.0");
-    CHECK(old.base_color_texture.m00 == 4);
-    CHECK(old.base_color_texture.m12 == 0.25f);
-    CHECK(mitsuba_material(bsdf_of("diffuse", bitmap_of("reflectance", "", "a.png"))).base_color_texture.is_srgb);
-    CHECK(!mitsuba_material(
-               bsdf_of("diffuse", bitmap_of("reflectance", "<boolean name=\"raw\" value=\"true\"/>", "a.png")))
-               .base_color_texture.is_srgb);
-    CHECK(load_bsdf(bsdf_of("diffuse", bitmap_of("reflectance", "", "none.png"))).material.base_color == grey(0.5f));
-}
-
-TEST_CASE("mitsuba: numbers of encoded pictures are decoded, and alpha channels are ignored") {
-    const MitsubaMaterial rough =
-        load_bsdf(bsdf_of("roughconductor", string_of("material", "Au") + bitmap_of("alpha", "", "a.png")));
-    const float linear = srgb_decode(128 / 255.0f);
-    CHECK(mitsuba_texel(rough, rough.material.roughness_texture, 0, 0) == doctest::Approx(std::sqrt(linear)));
-    for (const char* file : {"a.png", "veil.png"}) {
-        const MitsubaMaterial masked = load_bsdf(bsdf_of("mask", bitmap_of("opacity", "", file) + bsdf_of("diffuse")));
-        CHECK(mitsuba_texel(masked, masked.material.alpha_texture, 0, 0) == doctest::Approx(linear));
-        CHECK(masked.material.alpha_texture.channel == 0);
-    }
-}
-
-TEST_CASE("mitsuba: a checkerboard begins with color0, and scale multiplies") {
-    const MitsubaMaterial read =
-        load_bsdf(bsdf_of("diffuse", "<texture type=\"checkerboard\" name=\"reflectance\">" + rgb_of("color0", ".75") +
-                                         rgb_of("color1", ".25") + "</texture>"));
-    const TextureRef& ref = read.material.base_color_texture;
-    CHECK(mitsuba_texel(read, ref, 0.1f, 0.1f) == 0.75f);
-    CHECK(mitsuba_texel(read, ref, 0.6f, 0.1f) == 0.25f);
-    CHECK(mitsuba_texel(read, ref, 0.1f, 0.6f) == 0.25f);
-    CHECK(mitsuba_texel(read, ref, 0.6f, 0.6f) == 0.75f);
-    CHECK(ref.filter == TextureFilter::Nearest);
-    const Material scaled = mitsuba_material(
-        bsdf_of("diffuse", "<texture type=\"scale\" name=\"reflectance\"><float name=\"scale\" value=\".5\"/>" +
-                               bitmap_of("", "") + "</texture>"),
-        "0.6.0");
-    CHECK(scaled.base_color == grey(0.5f));
-    CHECK(scaled.base_color_texture.has_image());
-    CHECK(
-        load_bsdf(bsdf_of("diffuse", "<texture type=\"checkers\" name=\"reflectance\"/>")).messages.left_out().size() ==
-        1);
-}
-
-TEST_CASE("mitsuba: bumps and normal maps") {
-    CHECK(mitsuba_material(bsdf_of("normalmap", bitmap_of("normalmap", "<boolean name=\"raw\" value=\"true\"/>") +
-                                                    bsdf_of("diffuse")))
-              .normal_texture.has_image());
-    const Material bumpy =
-        mitsuba_material(bsdf_of("bumpmap", bitmap_of("arbitrary", "<boolean name=\"raw\" value=\"true\"/>") +
-                                                number_of("scale", 2) + bsdf_of("diffuse")));
-    const Material flatter = mitsuba_material(
-        bsdf_of("bumpmap", bitmap_of("arbitrary", "<boolean name=\"raw\" value=\"true\"/>") + bsdf_of("diffuse")));
-    CHECK(bumpy.normal_texture.has_image());
-    CHECK(bumpy.normal_scale == doctest::Approx(2 * flatter.normal_scale));
-    const MitsubaMaterial checks =
-        load_bsdf(bsdf_of("bumpmap", "<texture type=\"checkerboard\">" + number_of("color0", 0) +
-                                         number_of("color1", 0.125) + "</texture>" + bsdf_of("diffuse")));
-    CHECK(checks.messages.left_out() == std::vector<std::string>{});
-    REQUIRE(checks.material.normal_texture.has_image());
-    CHECK(mitsuba_texel(checks, checks.material.normal_texture, 0.25f, 0.25f) == 0.5f);
-    CHECK(std::abs(mitsuba_texel(checks, checks.material.normal_texture, 0.499f, 0.25f) - 0.5f) > 0.01f);
 }
 
 TEST_CASE("mitsuba: a warning says that backs reflect which are black in Mitsuba") {

@@ -175,6 +175,12 @@ TEST_CASE("pbrt: coats, panes and sheets are the nearest materials") {
     CHECK(lacquer.coat_ior == 1.6f);
     CHECK(lacquer.coat_roughness == doctest::Approx(0.5));
     CHECK(lacquer.roughness == 0);
+    const Material brushed = pbrt_material("Material \"coatedconductor\" \"float interface.uroughness\" .01 \"float "
+                                           "interface.vroughness\" .16 \"bool remaproughness\" false");
+    CHECK(brushed.coat_roughness == doctest::Approx(0.1));
+    CHECK(square(brushed.coat_roughness_anisotropy) == doctest::Approx(0.15 / 0.99));
+    CHECK(brushed.coat_anisotropy_rotation == doctest::Approx(kPi / 2));
+    CHECK(!brushed.has_anisotropy()); // the metal beneath is even
     const Material pane = pbrt_material("Material \"thindielectric\" \"float eta\" 1.5");
     CHECK(pane.transmission_weight == 1);
     CHECK(pane.thin_walled);

@@ -69,6 +69,20 @@ void set_roughness(Surface& surface, const TextureValue& u, const TextureValue& 
     material.anisotropy_rotation = along > across ? 0.0f : 0.5f * kPi;
 }
 
+void set_coat_roughness(Surface& surface, const Surface& reflection) {
+    Material& material = surface.material;
+    const Material& from = reflection.material;
+    material.coat_roughness = from.roughness;
+    material.coat_roughness_texture = from.roughness_texture;
+    material.coat_roughness_anisotropy = from.specular_roughness_anisotropy;
+    material.coat_anisotropy_rotation = from.anisotropy_rotation;
+    for (SlotImage image : reflection.images) {
+        if (image.slot != &M::roughness_texture) continue;
+        image.slot = &M::coat_roughness_texture;
+        surface.images.push_back(image);
+    }
+}
+
 float reflected_inside(float ior) {
     constexpr int kSteps = 256;
     float sum = 0; // the integral of F(cosine) 2 cosine, by the middles of equal steps

@@ -21,6 +21,9 @@ void tint_thin_pane(Surface& surface, const TextureValue& reflected, const Textu
 /// Sets the roughness along u and along v. Of textures one counts for both, that of u if it has one.
 void set_roughness(Surface& surface, const TextureValue& u, const TextureValue& v, Curve curve);
 
+/// Gives the coat of `surface` the roughness of a reflection that set_roughness() has set.
+void set_coat_roughness(Surface& surface, const Surface& reflection);
+
 /// The share of diffuse light inside a smooth dielectric of this index that its surface reflects back.
 float reflected_inside(float ior);
 

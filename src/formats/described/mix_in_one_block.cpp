@@ -72,7 +72,8 @@ struct LinearNumber {
     bool (*holds)(const M&);
 };
 constexpr std::array<LinearNumber, 5> kLinearNumbers = {{
-    {&M::coat_weight, &M::coat_texture, [](const M& m) { return m.coat_color == grey(1); }},
+    {&M::coat_weight, &M::coat_texture,
+     [](const M& m) { return m.coat_color == grey(1) && !m.coat_color_texture.has_image(); }},
     {&M::metallic, &M::metallic_texture,
      [](const M& m) { return m.kind == MaterialKind::MetallicRoughness && !m.transmits(); }},
     {&M::specular_weight, &M::specular_texture, [](const M& m) { return m.kind == MaterialKind::Conductor; }},

@@ -65,8 +65,10 @@ private:
             lose("the tint of the metal's edge is lost");
         if (m_.has_fuzz() && m_.fuzz_model != FuzzModel::Charlie) lose("its fuzz becomes glTF's sheen");
         if (m_.has_fuzz() && m_.fuzz_weight != 1) lose("the weight of its fuzz is lost");
-        if (m_.has_coat() && (m_.coat_ior != 1.5f || !(m_.coat_color == Rgb{1, 1, 1})))
+        if (m_.has_coat() &&
+            (m_.coat_ior != 1.5f || !(m_.coat_color == Rgb{1, 1, 1}) || m_.coat_color_texture.has_image()))
             lose("the index and the colour of its coat are lost");
+        if (m_.has_coat_anisotropy()) lose("the anisotropy of its coat is lost");
         if (m_.is_emitter() && m_.two_sided_emission != m_.double_sided)
             lose("its faces hide and emit alike in glTF; both follow the emission");
         if (m_.medium.is_there()) lose("the medium within is lost");

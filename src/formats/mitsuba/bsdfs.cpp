@@ -274,6 +274,11 @@ Surface Bsdfs::coating(Object& bsdf) {
     Surface surface = nested(bsdf), coat = make_surface(MaterialKind::MetallicRoughness);
     const float ior = relative_ior(bsdf);
     if (bsdf.type == "roughcoating") read_roughness(bsdf, coat);
+    const TextureValue absorption = textures_.color(bsdf, "sigma_a", ColorUse::Index, grey(0));
+    if (absorption.has_image())
+        bsdf.parameters.leave_out({"sigma_a"}, "the absorption of a coat has no texture", reading_.sink());
+    const float both_ways = 2 * textures_.number(bsdf, "thickness", 1).factor.r;
+    const Rgb depth = both_ways * (absorption.has_image() ? Rgb{} : absorption.factor);
     for_each_part(surface, [&](Surface& part) {
         Material& material = part.material;
         if (material.kind == MaterialKind::Diffuse) {
@@ -282,9 +287,9 @@ Surface Bsdfs::coating(Object& bsdf) {
         }
         material.coat_weight = 1;
         material.coat_ior = ior;
-        material.coat_roughness = coat.material.roughness;
+        material.coat_color = {min(exp(-depth.r), 1.0f), min(exp(-depth.g), 1.0f), min(exp(-depth.b), 1.0f)};
+        set_coat_roughness(part, coat);
     });
-    bsdf.parameters.leave_out({"sigma_a", "thickness"}, "coats absorb nothing", reading_.sink());
     if (color(bsdf, "specular_reflectance", 1).factor.r != 1)
         bsdf.parameters.leave_out({"specular_reflectance"}, "the reflectance of a coat follows from its index",
                                   reading_.sink());

@@ -140,16 +140,11 @@ Surface coated_diffuse(const MaterialSource& source) {
 Surface coated_conductor(const MaterialSource& source) {
     Surface surface = make_surface(MaterialKind::Conductor);
     set_conductor(source, "conductor.", surface);
-    read_roughness(source, 0, "interface.", surface);
-    Material& material = surface.material;
-    const float coat_roughness = material.roughness;
-    if (material.roughness_texture.has_image())
-        source.parameters.leave_out({"interface.roughness"}, "a coat's roughness has no texture", source.context.sink);
-    surface.material.roughness_texture = {};
-    std::erase_if(surface.images, [](const SlotImage& use) { return use.slot == &M::roughness_texture; });
     read_roughness(source, 0, "conductor.", surface);
-    material.coat_weight = 1;
-    material.coat_roughness = coat_roughness;
+    Surface coat = make_surface(MaterialKind::MetallicRoughness);
+    read_roughness(source, 0, "interface.", coat);
+    set_coat_roughness(surface, coat);
+    surface.material.coat_weight = 1;
     set_ior(source, "interface.eta", &Material::coat_ior, surface);
     leave_out_coat_parts(source);
     return surface;

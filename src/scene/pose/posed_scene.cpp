@@ -89,8 +89,8 @@ bool are_same_lights(const MaterialParameters& a, const MaterialParameters& b) {
                           m.coat_color.r, m.coat_color.g, m.coat_color.b, m.coat_ior};
     };
     const auto matrices_of = [](const MaterialParameters& m) {
-        return std::array{matrix_of(m.emission_texture), matrix_of(m.coat_texture),
-                          matrix_of(m.coat_roughness_texture)};
+        return std::array{matrix_of(m.emission_texture), matrix_of(m.coat_texture), matrix_of(m.coat_roughness_texture),
+                          matrix_of(m.coat_color_texture)};
     };
     if (!a.is_emissive() && !b.is_emissive()) return true;
     return same_bits(numbers_of(a), numbers_of(b)) && same_bits(matrices_of(a), matrices_of(b));

@@ -161,9 +161,16 @@ constexpr uint32_t kNone = 0xffffffffu;
 /// none.
 using MeshBySet = std::array<uint32_t, kTextureSets>;
 
-/// Returns whether only its anisotropy needs tangents, with or without a texture.
+/// Returns whether only the anisotropy of its reflection or its coat needs tangents, with or without a texture.
 bool is_stretched(const Material& material) {
-    return material.has_anisotropy() && !material.normal_texture.has_image();
+    return (material.has_anisotropy() || material.has_coat_anisotropy()) && !material.normal_texture.has_image();
+}
+
+/// Returns the texture that selects the set of coordinates for tangents; of several the base's.
+const TextureRef& tangent_map(const Material& material) {
+    if (material.normal_texture.has_image()) return material.normal_texture;
+    if (material.has_coat() && material.coat_normal_texture.has_image()) return material.coat_normal_texture;
+    return material.has_anisotropy() ? material.anisotropy_texture : material.coat_anisotropy_texture;
 }
 
 /// Adds copies of meshes that need tangents for several sets, and redirects instances to theirs.
@@ -173,11 +180,7 @@ std::vector<MeshBySet> choose_meshes(Scene& scene) {
     std::vector<MeshBySet> chosen(scene.meshes.size(), none);
     for (Instance& instance : scene.instances) {
         const Material& material = scene.materials[instance.material];
-        const bool is_of_coat =
-            !material.normal_texture.has_image() && material.has_coat() && material.coat_normal_texture.has_image();
-        const TextureRef& map = is_of_coat               ? material.coat_normal_texture
-                                : is_stretched(material) ? material.anisotropy_texture
-                                                         : material.normal_texture;
+        const TextureRef& map = tangent_map(material);
         const Mesh& mesh = scene.meshes[instance.mesh];
         if (!(map.has_image() || is_stretched(material)) || !mesh.tangents.empty() || mesh.uv[map.uv_set].empty())
             continue;

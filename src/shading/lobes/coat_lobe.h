@@ -8,9 +8,12 @@
 // here the coat's directional albedo for both directions replaces it. A bent normal's value is 0 where that and the
 // surface's own disagree on the side. For both directions it is reduced where the coat faces them less than the
 // surface does, so that the value is reciprocal and, times either cosine, no larger than about the coat's normal.
+// A stretched coat (coat_roughness_anisotropy of OpenPBR) is filmed_lobe.h's reflection of a dielectric alone.
 
 #include "math/frame.h"
+#include "math/portable_math.h"
 #include "shading/lobes/coat_absorption.h"
+#include "shading/lobes/filmed_lobe.h"
 #include "shading/lobes/schlick_lobe.h"
 #include "shading/lobes/unit_pair.h"
 
@@ -22,14 +25,27 @@ struct CoatLobe {
     float f0;                                               // reflectance at normal incidence, [0, 1]: 0.04 in glTF
     Vec3 normal = {0, 0, 1};                                // unit, in the frame of the BSDF, z > 0
     UnitPair color_rg = {1, 1}, color_b_and_solid = {1, 0}; // its colour (coat_absorption.h), and 1 on a solid
+    UnitPair wide_and_turn = {0, 0}; // a stretched coat's width along a tangent of its plane, else 0; the angle from x
+                                     // to that tangent in half turns
 
     HD Rgb color() const { return {color_rg.low(), color_rg.high(), color_b_and_solid.low()}; }
     HD bool is_tinted() const { return color_rg.bits != ~0u || (color_b_and_solid.bits & 0xffffu) != 0xffffu; }
     HD SchlickLobe interface() const { return {grey(0), 0, alpha, f0}; }
 
+    /// Stretches the coat's highlights along a tangent of the BSDF's frame. Its normal and width are those already set.
+    HD_CALL void set_stretch(const Stretch& stretch) {
+        if (!(stretch.anisotropy > 0)) return;
+        Vec3 tangent = {stretch.along.x, stretch.along.y, 0};
+        if (is_bent()) tangent = make_frame(normal).to_local(tangent);
+        const float half_turns = atan2(tangent.y, tangent.x) * kInvPi;
+        wide_and_turn = UnitPair(anisotropic_widths(alpha, stretch.anisotropy, {1, 0}).x,
+                                 half_turns < 0 ? half_turns + 1.0f : half_turns);
+    }
+
     HD LobeClass lobe_class() const { return interface().lobe_class(); }
     HD float energy() const { return strength * interface().energy(); }
     HD_CALL Gloss gloss(float cos_o) const {
+        if (is_stretched()) return stretched().gloss(cos_o);
         const Gloss whole = interface().gloss(cos_o);
         return {strength * whole.reflectance, alpha, 1.0f - strength * (1.0f - whole.transmittance)};
     }
@@ -51,6 +67,14 @@ struct CoatLobe {
             facing = factor_of_bend(abs(wo.z), o.z, abs(wi.z), i.z);
             o.z = min(abs(o.z), 1.0f);
             i.z = min(abs(i.z), 1.0f);
+        }
+        if (is_stretched()) {
+            const FilmedLobe lobe = stretched();
+            const float albedo = f0 + (1.0f - f0) * max(lobe.widths.schlick(o.z), lobe.widths.schlick(i.z));
+            if (is_tinted()) transmittance.tint = transmittance.tint * tint_of(wo, wi, o.z, i.z, albedo);
+            if (!reflects) i.z = -i.z;
+            const BsdfValue value = lobe.evaluate(o, i, beneath, transmittance);
+            return {facing * value.f, value.pdf};
         }
         const SchlickLobe lobe = interface();
         const SchlickLobe::Average average = lobe.make_average();
@@ -86,8 +110,16 @@ private:
         return min(1.0f, coat_o / cos_o) * min(1.0f, cos_i / coat_i);
     }
     HD bool is_bent() const { return normal.x != 0 || normal.y != 0; }
+    HD bool is_stretched() const { return (wide_and_turn.bits & 0xffffu) != 0; }
+    HD FilmedLobe stretched() const {
+        Microfacets widths = {max(wide_and_turn.low(), alpha), alpha};
+        sin_cos_2pi(0.5f * wide_and_turn.high(), widths.along.y, widths.along.x);
+        return {
+            .base_color = {}, .metallic = 0, .widths = widths, .f0 = grey(strength * f0), .f90 = strength, .film = {}};
+    }
 
     HD LobeDraw draw_straight(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
+        if (is_stretched()) return stretched().draw(wo, beneath, u_lobe, u);
         const SchlickLobe lobe = interface();
         const SchlickLobe::Average average = lobe.make_average();
         const LayerShares shares = make_shares(average, lobe.albedo_at(abs(wo.z), average), beneath);

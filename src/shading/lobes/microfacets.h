@@ -127,6 +127,12 @@ private:
     HD float unevenness() const { return min(2.5f * (1.0f - narrowest() / widest()), 1.0f); }
 };
 
+/// Direction and strength of stretched highlights, in a BSDF's frame.
+struct Stretch {
+    Vec2 along = {1, 0};  // unit, the tangent along which they are
+    float anisotropy = 0; // [0, 1]
+};
+
 /// Widths of KHR_materials_anisotropy: `alpha` across, and towards 1 with the square of `strength` along.
 HD inline Microfacets anisotropic_widths(float alpha, float strength, Vec2 along) {
     return {alpha + (1.0f - alpha) * (strength * strength), alpha, along};

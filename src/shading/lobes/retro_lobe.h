@@ -1,8 +1,8 @@
 #pragma once
 
 // The reflection of metallic-roughness that sends a share of its light back where it came from, as glass beads do: that
-// share is what specular_lobe.h reflects to the view's mirror image. It is reciprocal and keeps the energy of that
-// lobe, because GGX is symmetric about the normal. The surface is never perfectly smooth.
+// share is what the lobe without it reflects to the view's mirror image. It is reciprocal and keeps the energy of that
+// lobe, because microfacets are symmetric about the normal. The surface is never perfectly smooth.
 //
 // Source: Portsmouth, Raab, Belcour, Liu, "The Minimal Retroreflective Microfacet Model", JCGT 15(1), 2026;
 // KHR_materials_retroreflection (draft).
@@ -12,9 +12,11 @@
 
 namespace pertev {
 
-struct RetroLobe {
-    SpecularLobe lobe; // its width is at least kSmoothAlpha
-    float share;       // [0, 1], sent back
+/// Sends back a share of what `Reflection`, SpecularLobe or FilmedLobe, reflects.
+template <class Reflection>
+struct RetroOf {
+    Reflection lobe; // its widths are at least kSmoothAlpha
+    float share;     // [0, 1], sent back
 
     HD LobeClass lobe_class() const { return LobeClass::Glossy; }
     HD float energy() const { return lobe.energy(); }
@@ -41,6 +43,11 @@ private:
     HD static Vec3 mirrored(Vec3 wo) { return {-wo.x, -wo.y, wo.z}; }
 };
 
+using RetroLobe = RetroOf<SpecularLobe>;
+
+/// A reflection of any microfacets, with a metal's tint but without a film, of which a share is sent back.
+using FilmedRetroLobe = RetroOf<FilmedLobe>;
+
 struct PackedRetroLobe {
     UnitPair color_rg, color_b_metallic, f0_rg, f0_b_f90;
     float alpha, share;
@@ -56,6 +63,28 @@ struct PackedRetroLobe {
                  {f0_rg.low(), f0_rg.high(), f0_b_f90.low()},
                  f0_b_f90.high()},
                 share};
+    }
+};
+
+struct PackedFilmedRetroLobe {
+    UnitPair color_rg, color_b_metallic, f0_rg, f0_b_f90;
+    PackedMicrofacets microfacets; // packed with the share
+    UnitPair tint_rg, tint_b;
+
+    HD explicit PackedFilmedRetroLobe(const FilmedRetroLobe& of)
+        : color_rg(of.lobe.base_color.r, of.lobe.base_color.g),
+          color_b_metallic(of.lobe.base_color.b, of.lobe.metallic), f0_rg(of.lobe.f0.r, of.lobe.f0.g),
+          f0_b_f90(of.lobe.f0.b, of.lobe.f90), microfacets(of.lobe.widths, of.share),
+          tint_rg(of.lobe.tint.r, of.lobe.tint.g), tint_b(of.lobe.tint.b, 0) {}
+    HD FilmedRetroLobe unpacked() const {
+        return {{{color_rg.low(), color_rg.high(), color_b_metallic.low()},
+                 color_b_metallic.high(),
+                 microfacets.widths(),
+                 {f0_rg.low(), f0_rg.high(), f0_b_f90.low()},
+                 f0_b_f90.high(),
+                 {},
+                 {tint_rg.low(), tint_rg.high(), tint_b.low()}},
+                microfacets.more()};
     }
 };
 

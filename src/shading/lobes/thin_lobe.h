@@ -4,22 +4,23 @@
 // It is a layer between a reflection and a diffuse base that has the rest of the light; it reflects nothing itself.
 //
 // Source: KHR_materials_transmission without a volume, whose rough lobe is the reflection's, mirrored to the other
-// side; here its lost energy is compensated too (energy_tables.h). The reflection above takes the smaller of its two
+// side; here its lost energy is compensated too (Microfacets::lost). The reflection above takes the smaller of its two
 // transmittances, which is reciprocal.
 
-#include "shading/lobes/schlick_lobe.h"
+#include "shading/lobes/layer_transmittance.h"
+#include "shading/lobes/microfacets.h"
 
 namespace pertev {
 
 struct ThinLobe {
     Rgb tint;    // [0, 1], of the light that goes through
     float share; // [0, 1], of the light that reaches it; the base has the rest
-    float alpha; // GGX width = roughness^2, [0, 1]
+    Microfacets widths;
 
-    HD bool is_smooth() const { return !(alpha >= kSmoothAlpha); }
+    HD bool is_smooth() const { return widths.is_smooth(); }
     HD LobeClass lobe_class() const { return is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
     HD float energy() const { return share * max_component(tint); }
-    HD Gloss gloss(float) const { return {share * tint, alpha}; }
+    HD Gloss gloss(float) const { return {share * tint, widths.energy_width()}; }
     HD_CALL SpecularBranches specular(Vec3 wo) const {
         SpecularBranches branches;
         if (!is_smooth()) return branches;
@@ -32,11 +33,11 @@ struct ThinLobe {
         const float p_beneath = probability_beneath(beneath);
         BsdfValue value;
         if (!is_smooth() && wo.z * wi.z < 0) {
-            const Vec3 o = {wo.x, wo.y, abs(wo.z)}, i = {wi.x, wi.y, abs(wi.z)};
-            const GgxReflection once = evaluate_ggx_reflection(o, i, alpha);
-            const float lost_o = metal_lost(o.z, alpha), lost_i = metal_lost(i.z, alpha);
-            const float more = i.z * kInvPi * lost_o * lost_i / metal_average_lost(alpha);
-            const float pdf = (1.0f - lost_o) * once.pdf + lost_o * pdf_grazing_lobe(i.z, alpha);
+            const Vec3 o = widths.turned({wo.x, wo.y, abs(wo.z)}), i = widths.turned({wi.x, wi.y, abs(wi.z)});
+            const GgxReflection once = widths.evaluate_reflection(o, i);
+            const float lost_o = widths.lost(o.z), lost_i = widths.lost(i.z);
+            const float more = i.z * kInvPi * lost_o * lost_i / max(widths.average_lost(), 1e-9f);
+            const float pdf = (1.0f - lost_o) * once.pdf + lost_o * widths.pdf_lost_lobe(i.z);
             value = {(transmittance.light_of_delta() * share * (once.f + more)) * tint,
                      transmittance.reach * ((1.0f - p_beneath) * pdf)};
         }
@@ -53,11 +54,10 @@ struct ThinLobe {
                                .is_transmission = true}};
         }
         Vec3 wi;
-        if ((u_lobe - p_beneath) < (1.0f - p_beneath) * metal_lost(abs(wo.z), alpha)) {
-            wi = sample_grazing_lobe(alpha, u);
+        if ((u_lobe - p_beneath) < (1.0f - p_beneath) * widths.lost(abs(wo.z))) {
+            wi = widths.sample_lost_lobe(u);
         } else {
-            const Vec3 o = {wo.x, wo.y, abs(wo.z)};
-            wi = normalize(reflect(o, sample_ggx_visible_normal(o, alpha, u)));
+            wi = widths.sample_reflection(wo, u);
             if (!(wi.z > 0)) return {};
         }
         wi.z = copysign(wi.z, -wo.z);
