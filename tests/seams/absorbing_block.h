@@ -37,6 +37,7 @@ struct BlockVertex {
 template <bool kScatters>
 struct AbsorbingBlock {
     static constexpr bool kIsVacuum = false;
+    HD static bool is_in(const SceneView&) { return true; }
     using Vertex = BlockVertex;
 
     HD explicit AbsorbingBlock(const SceneView&) {}

@@ -37,6 +37,7 @@ struct MediumVertex {
 template <Features kFeatures>
 struct HomogeneousMedium {
     static constexpr bool kIsVacuum = false;
+    HD static bool is_in(const SceneView& scene) { return scene.has_media != 0; }
     using Vertex = MediumVertex;
 
     HD explicit HomogeneousMedium(const SceneView& scene) : scene_(scene) {}

@@ -4,6 +4,7 @@
 // masks that contain it, with this interface:
 //
 //   explicit Medium(const SceneView&)
+//   static bool is_in(const SceneView&)         whether the scene has any; code for media also serves other scenes
 //   Vertex                                      a scattering in the medium, with the functions of SurfaceVertex
 //                                               (path_listener.h) for a phase function in place of a BSDF
 //   bool scatters(job, path, hit, vertex)       Traces the path's ray through the medium up to `hit`, which is none if

@@ -112,7 +112,11 @@ HD inline InteriorList interior_towards(const SceneView& scene, const PathState&
 /// Returns whether media absorb and scatter light. Code for them also serves scenes that have thin walls alone.
 template <Features kFeatures>
 HD inline bool has_medium(const SceneView& scene) {
-    return !Medium<kFeatures>::kIsVacuum && scene.has_media != 0;
+    if constexpr (Medium<kFeatures>::kIsVacuum) {
+        return false;
+    } else {
+        return Medium<kFeatures>::is_in(scene);
+    }
 }
 
 /// Dims the light of a sample by the nested solid that holds the vertex, if media do not, or else by the layers and
