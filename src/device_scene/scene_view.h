@@ -52,6 +52,7 @@ struct SceneView {
     const MaterialParameters* materials;
     const uint8_t* shading_groups; // [materials] (shading/shading_groups.h)
     ShadingVariant variant;        // shading variant of all materials
+    uint32_t has_plain_light;      // 1 if emitters have neither textures, coats nor holes, and no solid absorbs
     const TextureImageView* images;
     const float* linear_from_srgb; // [kSrgbBytes], and [kSrgbWords] if there is an image of depth Srgb16
     LightSetView lights;

@@ -211,8 +211,7 @@ HD inline Frame tangent_frame(const InstanceView& instance, const MeshView& mesh
     if (mesh.tangents == nullptr) return make_frame(normal); // no texture coordinates either (make_tangents.h)
     const Vec4 local = interpolate(mesh.tangents, triangle.i, hit.u, hit.v);
     const Vec3 world = transform_vector(instance.world_from_local, {local.x, local.y, local.z});
-    const Frame frame =
-        frame_with_tangent(normal, {world.x, world.y, world.z, instance.is_mirrored != 0 ? -local.w : local.w});
+    const Frame frame = frame_with_tangent(normal, world, instance.is_mirrored != 0 ? -local.w : local.w);
     return frame_of_transformed_map(frame, {map.m00, map.m01}, {map.m10, map.m11});
 }
 

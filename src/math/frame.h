@@ -15,6 +15,11 @@ struct FrameOf {
 
     HD Vec3Of<T> to_local(Vec3Of<T> v) const { return {dot(v, tangent), dot(v, bitangent), dot(v, normal)}; }
     HD Vec3Of<T> to_world(Vec3Of<T> v) const { return v.x * tangent + v.y * bitangent + v.z * normal; }
+
+    HD friend inline FrameOf select(MaskOf<T> condition, FrameOf a, FrameOf b) {
+        return {select(condition, a.tangent, b.tangent), select(condition, a.bitangent, b.bitangent),
+                select(condition, a.normal, b.normal)};
+    }
 };
 
 using Frame = FrameOf<float>;

@@ -45,34 +45,42 @@ HD inline Vec3Of<T> world_normal(const TransformOf<T>& local_from_world, Vec3Of<
     return select(dot(normal, geometric_normal) > 0, normal, geometric_normal);
 }
 
-/// Frame with z = `normal` (unit), x as near to `tangent` (xyz, any length) as possible, and y by its handedness, so
+/// Frame with z = `normal` (unit), x as near to `tangent` (any length) as possible, and y by the handedness `w`, so
 /// that the frame is left-handed for w < 0. If the tangent has no component perpendicular to the normal, it is an
 /// arbitrary right-handed frame.
-HD inline Frame frame_with_tangent(Vec3 normal, Vec4 tangent) {
-    const Vec3 along = normalize_or(Vec3{tangent.x, tangent.y, tangent.z}, {0, 0, 0});
-    const Vec3 across = along - dot(along, normal) * normal;
-    if (!(length_squared(across) > 1e-10f)) return make_frame(normal);
-    const Vec3 x = normalize(across);
-    return {x, (tangent.w < 0 ? -1.0f : 1.0f) * cross(normal, x), normal};
+template <class T = float>
+HD inline FrameOf<T> frame_with_tangent(Vec3Of<T> normal, std::type_identity_t<Vec3Of<T>> tangent,
+                                        std::type_identity_t<T> w) {
+    const Vec3Of<T> along = normalize_or<T>(tangent, {0, 0, 0});
+    const Vec3Of<T> across = along - dot(along, normal) * normal;
+    const MaskOf<T> has_tangent = length_squared(across) > 1e-10f;
+    if (!any(has_tangent)) return make_frame(normal);
+    const Vec3Of<T> x = normalize(across);
+    const FrameOf<T> frame = {x, select(w < 0, T(-1.0f), T(1.0f)) * cross(normal, x), normal};
+    return any(!has_tangent) ? select(has_tangent, frame, make_frame(normal)) : frame;
 }
 
 /// Transforms `frame` (orthonormal) for a map with transformed coordinates: u' grows by u_by.x with u and by u_by.y
 /// with v, and v' by v_by. Its x lies along growing u' at constant v', and a mirroring transform flips it. A pure
 /// scale, or a transform without inverse, changes nothing.
-HD inline Frame frame_of_transformed_map(const Frame& frame, Vec2 u_by, Vec2 v_by) {
-    if (u_by.y == 0 && v_by.x == 0 && u_by.x > 0 && v_by.y > 0) return frame;
-    const float det = u_by.x * v_by.y - u_by.y * v_by.x;
-    if (!(abs(det) > 0) || !is_finite(det)) return frame;
-    const float sign = copysign(1.0f, det);
-    const Vec3 along = sign * (v_by.y * frame.tangent + v_by.x * frame.bitangent); // y of the frame points against v
-    const Vec3 x = normalize_or(along, frame.tangent);
-    const float handedness = sign * copysign(1.0f, dot(cross(frame.normal, frame.tangent), frame.bitangent));
-    return {x, handedness * cross(frame.normal, x), frame.normal};
+template <class T = float>
+HD inline FrameOf<T> frame_of_transformed_map(const FrameOf<T>& frame, Vec2Of<T> u_by, Vec2Of<T> v_by) {
+    const T det = u_by.x * v_by.y - u_by.y * v_by.x;
+    const MaskOf<T> is_scale = u_by.y == 0 && v_by.x == 0 && u_by.x > 0 && v_by.y > 0;
+    const MaskOf<T> changes = !is_scale && abs(det) > 0 && is_finite(det);
+    if (!any(changes)) return frame;
+    const T sign = copysign(T(1.0f), det);
+    const Vec3Of<T> along = sign * (v_by.y * frame.tangent + v_by.x * frame.bitangent); // y of the frame is against v
+    const Vec3Of<T> x = normalize_or(along, frame.tangent);
+    const T handedness = sign * copysign(T(1.0f), dot(cross(frame.normal, frame.tangent), frame.bitangent));
+    return select(changes, FrameOf<T>{x, handedness * cross(frame.normal, x), frame.normal}, frame);
 }
 
 /// Unit normal of a normal map's texel: `texel` is the colour in [0, 1], `scale` the map's strength.
-HD inline Vec3 mapped_normal(const Frame& frame, Vec3 texel, float scale) {
-    const Vec3 local = {scale * (2.0f * texel.x - 1.0f), scale * (2.0f * texel.y - 1.0f), 2.0f * texel.z - 1.0f};
+template <class T = float>
+HD inline Vec3Of<T> mapped_normal(const FrameOf<T>& frame, std::type_identity_t<Vec3Of<T>> texel,
+                                  std::type_identity_t<T> scale) {
+    const Vec3Of<T> local = {scale * (2.0f * texel.x - 1.0f), scale * (2.0f * texel.y - 1.0f), 2.0f * texel.z - 1.0f};
     return normalize_or(frame.to_world(local), frame.normal);
 }
 

@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "device_scene/scene_on_device.h"
+#include "integrators/path/path_code.h"
 #include "integrators/path/path_vertex.h"
 #include "integrators/path/shade_lanes.h"
 #include "render/prepare_scene.h"
@@ -29,6 +30,7 @@ Mesh scattered_triangles(test::Random& random, bool has_normals) {
         const auto channel = [&] { return random.below(4) == 0 ? 0.0f : random.unit(); };
         const float red = channel(), green = channel();
         if (has_normals) mesh.colors.push_back({red, green, channel(), 1});
+        mesh.uv[0].push_back({2 * random.unit(), random.unit()});
     }
     return mesh;
 }
@@ -58,6 +60,47 @@ Scene scattered_scene(test::Random& random, const std::optional<Environment>& en
     return scene;
 }
 
+/// Adds to scattered_scene() a texture of the grey material's colour, normal maps with and without tangents, and
+/// materials that lanes do not shade: a metal, a coat on white, rough diffuse and an unlit one.
+Scene mixed_scene(test::Random& random, const std::optional<Environment>& environment) {
+    Scene scene = scattered_scene(random, environment);
+    scene.images.resize(2);
+    scene.images[0].rgba8 = {2, 2, {255, 0, 9, 255, 20, 90, 255, 255, 0, 0, 0, 255, 77, 255, 3, 255}};
+    scene.images[1].rgba8 = {2, 1, {128, 90, 255, 255, 255, 10, 140, 255}};
+    TextureRef& color = scene.materials[2].base_color_texture;
+    color.image = 0, color.m00 = 0.5f, color.m01 = 0.25f;
+    for (const bool has_tangents : {false, true}) {
+        for (const uint32_t mesh : {0u, 1u}) {
+            scene.materials.push_back(test::white(0.7f));
+            Material& bumpy = scene.materials.back();
+            bumpy.normal_texture = color, bumpy.normal_texture.image = 1;
+            if (mesh == 1) bumpy.normal_texture.m00 = -0.5f;
+            bumpy.normal_scale = has_tangents ? 0.7f : -1.5f;
+            scene.meshes.push_back(scene.meshes[mesh]);
+            Mesh& with_tangents = scene.meshes.back();
+            for (std::size_t i = 0; has_tangents && i < with_tangents.positions.size(); ++i) {
+                const Vec3 t = random.below(8) == 0 ? Vec3{0, 0, 0} : 3.0f * random.direction();
+                with_tangents.tangents.push_back({t.x, t.y, t.z, i % 6 < 3 ? 1.0f : -1.0f});
+            }
+            scene.instances.push_back({"",
+                                       static_cast<uint32_t>(scene.meshes.size() - 1),
+                                       static_cast<uint32_t>(scene.materials.size() - 1),
+                                       {}});
+            scene.instances.back().world_from_local.row0.x = mesh == 1 ? -2.0f : 1.0f;
+            scene.instances.push_back(scene.instances.back());
+            scene.instances.back().world_from_local.translation = {0.5f, 0, 1};
+        }
+    }
+    const auto first = static_cast<uint32_t>(scene.materials.size());
+    for (int i = 0; i < 4; ++i) scene.materials.push_back(test::white(0.5f));
+    scene.materials[first].kind = MaterialKind::Conductor;
+    scene.materials[first + 1].coat_weight = 1;
+    scene.materials[first + 2].base_diffuse_roughness = 0.5f;
+    scene.materials[first + 3].kind = MaterialKind::Unlit;
+    for (uint32_t i = 0; i < 4; ++i) scene.instances.push_back({"", i % 2, first + i, {}});
+    return scene;
+}
+
 struct PreparedJob {
     Scene scene;
     Messages messages;
@@ -72,10 +115,12 @@ struct PreparedJob {
     }
 };
 
-/// Draws a path and its hit: inside triangles, on edges and at corners, with perpendicular, grazing and tangential
-/// rays.
+/// Draws a path and its hit on a material that lanes shade: inside triangles, on edges and at corners, with
+/// perpendicular, grazing and tangential rays.
 void draw_vertex_of(test::Random& random, const SceneView& scene, PathState& path, Hit& hit) {
     hit = {.t = random.within(0.1f, 5), .instance = random.below(scene.instance_count), .primitive = {}};
+    while (!can_shade_lanes(scene.materials[scene.instances[hit.instance].material]))
+        hit.instance = random.below(scene.instance_count);
     hit.primitive = random.below(kTriangles);
     hit.u = random.below(4) == 0 ? 0.5f * static_cast<float>(random.below(3)) : random.unit();
     hit.v = random.below(4) == 0 ? 0.0f : (1 - hit.u) * random.unit();
@@ -112,6 +157,7 @@ struct Counts {
 };
 
 /// Shades `count` random vertices in lanes and one by one.
+template <Features kFeatures>
 void check_vertices(const VertexShading& shading, const PathJob& job, test::Random& random, uint32_t count,
                     Counts& counts) {
     PathState before[kMaxLanes], paths[kMaxLanes];
@@ -133,7 +179,7 @@ void check_vertices(const VertexShading& shading, const PathJob& job, test::Rand
         bool has_shadow_ray = false;
         Listeners<> nobody(job);
         const bool goes_on =
-            shade_vertex<kPlainDiffuse>(job, path, hits[lane], DrawOnDemand(), expected, has_shadow_ray, nobody);
+            shade_vertex<kFeatures>(job, path, hits[lane], DrawOnDemand(), expected, has_shadow_ray, nobody);
         CAPTURE(lane);
         CAPTURE(path.depth);
         CHECK(is_same(paths[lane].radiance, path.radiance));
@@ -173,6 +219,7 @@ std::vector<PathSettings> settings_of_tests() {
     return settings;
 }
 
+template <Features kFeatures>
 void check_all_vertices(const VertexShading& shading) {
     test::Random random(7);
     Environment panorama;
@@ -182,13 +229,15 @@ void check_all_vertices(const VertexShading& shading) {
     for (const std::optional<Environment>& environment :
          {std::optional<Environment>{}, std::optional{Environment{{}, {0.3f, 0.4f, 0.6f}, 1.0f}},
           std::optional{Environment{{}, {0, 0, 0}, 0}}, std::optional{panorama}}) {
-        PreparedJob of(scattered_scene(random, environment));
+        constexpr bool kIsMixed = kFeatures != kPlainDiffuse;
+        PreparedJob of(kIsMixed ? mixed_scene(random, environment) : scattered_scene(random, environment));
+        CHECK(features_for(of.job) == kFeatures);
         for (const PathSettings& settings : settings_of_tests()) {
             of.job.settings = settings;
             REQUIRE(can_shade_lanes(of.job));
             for (uint32_t round = 0; round < 60; ++round) {
-                check_vertices(shading, of.job, random, 1 + round % shading.lanes, counts);
-                check_vertices(shading, of.job, random, shading.lanes, counts);
+                check_vertices<kFeatures>(shading, of.job, random, 1 + round % shading.lanes, counts);
+                check_vertices<kFeatures>(shading, of.job, random, shading.lanes, counts);
             }
         }
     }
@@ -200,10 +249,39 @@ void check_all_vertices(const VertexShading& shading) {
 
 } // namespace
 
-TEST_CASE("shade lanes: eight vertices have the bits of single ones") { check_all_vertices(kShadingOf8); }
+TEST_CASE("shade lanes: eight vertices have the bits of single ones") {
+    check_all_vertices<kPlainDiffuse>(kShadingOf8);
+    check_all_vertices<kAllMaterials>(kShadingOf8);
+}
 
 #if defined(PERTEV_HAS_16_LANES)
 TEST_CASE("shade lanes: sixteen vertices have the bits of single ones") {
-    if (has_sixteen_lanes()) check_all_vertices(kShadingOf16);
+    if (!has_sixteen_lanes()) return;
+    check_all_vertices<kPlainDiffuse>(kShadingOf16);
+    check_all_vertices<kAllMaterials>(kShadingOf16);
 }
 #endif
+
+TEST_CASE("shade lanes: vertices are single where light is not plain") {
+    const auto takes_lanes = [](const auto& change) {
+        test::Random random(3);
+        Scene scene = mixed_scene(random, {});
+        change(scene);
+        return can_shade_lanes(PreparedJob(std::move(scene)).job);
+    };
+    CHECK(takes_lanes([](Scene&) {}));
+    CHECK(!takes_lanes([](Scene& scene) { scene.materials[3].emission_texture.image = 0; }));
+    CHECK(!takes_lanes([](Scene& scene) { scene.materials[3].coat_weight = 0.5f; }));
+    CHECK(!takes_lanes([](Scene& scene) { scene.materials[4].alpha_mode = AlphaMode::Blend; }));
+    CHECK(takes_lanes([](Scene& scene) { scene.materials[2].alpha_mode = AlphaMode::Blend; }));
+    CHECK(!takes_lanes([](Scene& scene) {
+        scene.materials.back().kind = MaterialKind::Dielectric;
+        scene.materials.back().transmission_depth = 1;
+    }));
+    CHECK(!takes_lanes([](Scene& scene) {
+        scene.lights[0].kind = LightKind::Goniometric;
+        float greatest = 0;
+        scene.lights[0].table =
+            make_intensity_table(make_round_table(kPi, [](float angle) { return 4 - angle; }), greatest);
+    }));
+}

@@ -137,7 +137,7 @@ public:
         for (uint32_t i = 0; i < count_; ++i) {
             if (hits_[i].instance == kNoHit) {
                 missed_[missed++] = i;
-            } else if (paths_[i].depth >= depth_of_lanes_) {
+            } else if (paths_[i].depth >= depth_of_lanes_ && is_for_lanes(i)) {
                 together_[together++] = i;
             } else {
                 alone_[alone++] = i;
@@ -159,6 +159,13 @@ public:
     }
 
 private:
+    /// Returns whether the vertex of path i is on a material that lanes shade.
+    bool is_for_lanes(uint32_t i) const {
+        const SceneView& scene = this->scene_of(paths_[i]);
+        return scene.variant == ShadingVariant::PlainDiffuse ||
+               can_shade_lanes(scene.materials[scene.instances[hits_[i].instance].material]);
+    }
+
     void shade_together(const uint32_t* which, uint32_t count) {
         const uint32_t lanes = lanes_.lanes;
         for (uint32_t first = 0; first < count; first += lanes) {
@@ -169,8 +176,10 @@ private:
                 prefetch_indices(which, first + lane + 2 * lanes, count);
                 prefetch_vertices(which, first + lane + lanes, count);
             }
+            std::array<uint32_t, kMaxLanes> keys;
             for (uint32_t lane = 0; lane < vertices.count; ++lane) {
                 Listener(job_).vertex_in_lanes(*vertices.paths[lane], *vertices.hits[lane]);
+                keys[lane] = key_of(*vertices.paths[lane], true);
             }
             const LaneResults results = lanes_.shade(job_, vertices, shadow_rays_ + shadows_);
             for (uint32_t lane = 0; lane < vertices.count; ++lane) {
@@ -178,7 +187,7 @@ private:
                 goes_on_[i] = (results.goes_on >> lane & 1) != 0;
                 if ((results.has_shadow_ray >> lane & 1) == 0) continue;
                 shadow_data_[shadows_] = {};
-                shadow_keys_[shadows_] = 0, shadow_paths_[shadows_++] = i;
+                shadow_keys_[shadows_] = keys[lane], shadow_paths_[shadows_++] = i;
             }
         }
     }

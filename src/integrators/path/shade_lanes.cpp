@@ -26,8 +26,9 @@ const VertexShading& vertex_shading() {
 }
 
 bool can_shade_lanes(const PathJob& job) {
-    return (features_for(job) & ~(kBatched | kLightTree)) == kPlainDiffuse && job.settings.light == PathLight::Path &&
-           job.settings.strategy != LightStrategy::BsdfOnly;
+    constexpr Features kAllowed = kAllMaterials | kBatched | kLightTree;
+    return (features_for(job) & ~kAllowed) == 0 && job.picture.scene.has_plain_light != 0 &&
+           job.settings.light == PathLight::Path && job.settings.strategy != LightStrategy::BsdfOnly;
 }
 
 } // namespace pertev

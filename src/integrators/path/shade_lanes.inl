@@ -80,7 +80,8 @@ struct Triangles {
     Floats u, v;
     Rgbs albedo;
     Mask has_normals, is_mirrored, is_baked;
-    unsigned emits = 0; // lanes whose material emits
+    unsigned emits = 0;     // lanes whose material emits
+    unsigned have_maps = 0; // lanes whose material has a normal map
 };
 
 void load_transforms(const std::array<const InstanceView*, kLanes>& instances, Triangles& triangles) {
@@ -134,12 +135,13 @@ Triangles load_triangles(const SceneView& scene, const LaneVertices& vertices) {
         table.set(kNormalC, lane, normals[i.c]);
         table.set(kU, lane, hit.u);
         table.set(kV, lane, hit.v);
-        table.set(kAlbedo, lane, base_color_at<ShadingVariant::PlainDiffuse>(scene, material, mesh, i, hit.u, hit.v));
+        table.set(kAlbedo, lane, base_color_at<ShadingVariant::Diffuse>(scene, material, mesh, i, hit.u, hit.v));
         have_normals |= (has_normals ? 1u : 0u) << lane;
         are_mirrored |= (instance.is_mirrored != 0 ? 1u : 0u) << lane;
         are_baked |= (instance.is_baked != 0 ? 1u : 0u) << lane;
         const bool emits = material.emission.r > 0 || material.emission.g > 0 || material.emission.b > 0;
         triangles.emits |= (emits ? 1u : 0u) << lane;
+        triangles.have_maps |= (material.normal_texture.has_image() ? 1u : 0u) << lane;
     }
     load_transforms(instances, triangles);
     triangles.a = table.vec3(kA), triangles.b = table.vec3(kB), triangles.c = table.vec3(kC);
@@ -169,7 +171,54 @@ struct Surfaces {
     Vec3s context_normal(Vec3s wo) const { return select(dot(wo, frame.normal) < 0, -frame.normal, frame.normal); }
 };
 
-Surfaces make_surfaces(const Triangles& t, Vec3s wo) {
+/// Normals of normal maps, for lanes that have one; `normal` is the interpolated one of each.
+Vec3s map_normals(const SceneView& scene, const LaneVertices& vertices, const Triangles& t, Vec3s normal) {
+    enum Field {
+        kA = 0,
+        kB = 3,
+        kC = 6,
+        kHandednessA = 9,
+        kHandednessB,
+        kHandednessC,
+        kMap,
+        kTexel = 16,
+        kScale = 19,
+        kFields
+    };
+    Table<kFields> table;
+    unsigned have_tangents = 0;
+    for (uint32_t lane = 0; lane < kLanes; ++lane) {
+        const Hit& hit = *vertices.hits[lane];
+        const InstanceView& instance = scene.instances[hit.instance];
+        const MeshView& mesh = scene.meshes[instance.mesh];
+        const MaterialParameters& material = scene.materials[instance.material];
+        const TextureRef& map = material.normal_texture;
+        const TriangleIndices i = triangle_indices(mesh, hit.primitive);
+        const bool has_tangents = mesh.tangents != nullptr, has_map = map.has_image();
+        have_tangents |= (has_tangents ? 1u : 0u) << lane;
+        const Vec4 none = {1, 0, 0, 1};
+        const Vec4 a = has_tangents ? mesh.tangents[i.a] : none, b = has_tangents ? mesh.tangents[i.b] : none,
+                   c = has_tangents ? mesh.tangents[i.c] : none;
+        table.set(kA, lane, Vec3{a.x, a.y, a.z}), table.set(kHandednessA, lane, a.w);
+        table.set(kB, lane, Vec3{b.x, b.y, b.z}), table.set(kHandednessB, lane, b.w);
+        table.set(kC, lane, Vec3{c.x, c.y, c.z}), table.set(kHandednessC, lane, c.w);
+        table.set(kMap, lane, map.m00), table.set(kMap + 1, lane, map.m01);
+        table.set(kMap + 2, lane, map.m10), table.set(kMap + 3, lane, map.m11);
+        const Vec4 texel = has_map ? texel_at(scene, mesh, map, i, hit.u, hit.v) : Vec4{};
+        table.set(kTexel, lane, Vec3{texel.x, texel.y, texel.z});
+        table.set(kScale, lane, material.normal_scale);
+    }
+    const Vec3s local = interpolate(table.vec3(kA), table.vec3(kB), table.vec3(kC), t.u, t.v);
+    const Floats w =
+        (1.0f - t.u - t.v) * table.get(kHandednessA) + t.u * table.get(kHandednessB) + t.v * table.get(kHandednessC);
+    const FrameOf<Floats> by_tangents = frame_of_transformed_map(
+        frame_with_tangent(normal, transform_vector(t.world_from_local, local), select(t.is_mirrored, -w, w)),
+        {table.get(kMap), table.get(kMap + 1)}, {table.get(kMap + 2), table.get(kMap + 3)});
+    const FrameOf<Floats> frame = select(Mask::of_bits(have_tangents), by_tangents, make_frame(normal));
+    return select(Mask::of_bits(t.have_maps), mapped_normal(frame, table.vec3(kTexel), table.get(kScale)), normal);
+}
+
+Surfaces make_surfaces(const SceneView& scene, const LaneVertices& vertices, const Triangles& t, Vec3s wo) {
     WorldTriangleOf<Floats> triangle;
     place_hit(triangle, {t.world_from_local, t.local_from_world, t.is_mirrored, t.is_baked}, t.a, t.b, t.c, t.u, t.v);
     Surfaces s;
@@ -178,22 +227,23 @@ Surfaces make_surfaces(const Triangles& t, Vec3s wo) {
     s.geometric_normal = triangle.normal;
     s.tilt = 0.0f;
     Vec3s shading_normal = triangle.normal;
-    if (any(t.has_normals)) {
+    if (any(t.has_normals) || t.have_maps != 0) {
         const Transforms& local_from_world = t.local_from_world;
         const Vec3s sum = transform_transposed(local_from_world, t.normal_a + t.normal_b + t.normal_c);
         const Mask is_behind = t.has_normals && dot(sum, triangle.normal) < 0;
         const Vec3s front = select(is_behind, -triangle.normal, triangle.normal);
-        const Vec3s normal =
-            world_normal(local_from_world, interpolate(t.normal_a, t.normal_b, t.normal_c, t.u, t.v), front);
+        const Vec3s local = interpolate(t.normal_a, t.normal_b, t.normal_c, t.u, t.v);
+        Vec3s normal = world_normal(local_from_world, select(t.has_normals, local, Vec3s{}), front);
         const Vec3s corners = {corner_tilt(local_from_world, t.normal_a, front),
                                corner_tilt(local_from_world, t.normal_b, front),
                                corner_tilt(local_from_world, t.normal_c, front)};
         const Floats tilt = terminator_tilt(sine_between(normal, front), dot({1.0f - t.u - t.v, t.u, t.v}, corners));
+        if (t.have_maps != 0) normal = map_normals(scene, vertices, t, normal);
         const Floats side = select(dot(wo, front) < 0, Floats(-1.0f), Floats(1.0f));
         const Vec3s valid = side * valid_normal(side * normal, side * front, wo);
         s.geometric_normal = front;
         s.tilt = select(t.has_normals, tilt, Floats(0.0f));
-        shading_normal = select(t.has_normals, valid, front);
+        shading_normal = select(t.has_normals || Mask::of_bits(t.have_maps), valid, front);
     }
     s.frame = make_frame(shading_normal);
     return s;
@@ -388,7 +438,7 @@ Paths load_paths(const LaneVertices& vertices) {
     const VertexWords<Words> words = draw_numbers(job, vertices);
     const Vec3s wo = -paths.direction;
     const Triangles triangles = load_triangles(scene, vertices);
-    const Surfaces surfaces = make_surfaces(triangles, wo);
+    const Surfaces surfaces = make_surfaces(scene, vertices, triangles, wo);
     add_emission(job, triangles.emits & all, vertices, surfaces);
     unsigned scatter = 0;
     for (uint32_t lane = 0; lane < vertices.count; ++lane) {
