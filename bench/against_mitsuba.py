@@ -82,7 +82,7 @@ class Mitsuba:
         if arguments.device == "cpu":
             import drjit
             drjit.set_thread_count(arguments.threads)
-            if arguments.lanes:
+            if arguments.lanes == 8:
                 hold_to_avx2(pathlib.Path(drjit.__file__).parent / "libdrjit-core.so")
 
     @staticmethod

@@ -213,6 +213,10 @@ def columns_of(name):
             ("times_sooner", "times sooner to equal error", None), ("pertev_mean", "Pertev mean", None), (f"{key}_mean", f"{name} mean", None)]
 
 
+NOTES_OF_LANES = {None: [], 1: ["Pertev shades vertices one by one."],
+                  8: ["Shading of both held to eight lanes of AVX2 on a processor with AVX-512."]}
+
+
 def main(description, make_peer, devices):
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("pertev")
@@ -222,7 +226,8 @@ def main(description, make_peer, devices):
     parser.add_argument("--runs", type=int, default=5, help="runs of each renderer, in turns (5)")
     parser.add_argument("--reference", type=int, default=4096, help="samples of the references (4096)")
     parser.add_argument("--jobs", nargs="+", choices=[kind.stem for kind in JOBS], metavar="STEM", help="only these")
-    parser.add_argument("--lanes", type=int, choices=[8], help="shade eight paths at once, by AVX2, where the processor has AVX-512")
+    parser.add_argument("--lanes", type=int, choices=[1, 8],
+                        help="shade eight vertices at once, by AVX2, where the processor has AVX-512, or (1) one by one, Pertev alone")
     parser.add_argument("--work", type=pathlib.Path, help="a folder in which references are kept")
     parser.add_argument("-o", "--output", type=pathlib.Path)
     arguments = parser.parse_args()
@@ -243,6 +248,6 @@ def main(description, make_peer, devices):
             rows.append(Contest(arguments, peer, folder).run(job))
     if arguments.output:
         notes = [f"{peer.what()}; {arguments.samples} samples, box filter; medians of {arguments.runs} runs in turns; references of "
-                 f"{arguments.reference} samples.", *(["Shading of both held to eight lanes of AVX2 on a processor with AVX-512."] if arguments.lanes else [])]
+                 f"{arguments.reference} samples.", *NOTES_OF_LANES[arguments.lanes]]
         title = f"Against {peer.name}, {machine(arguments.device)}"
         write_measurement(arguments.output, arguments.pertev, title, columns_of(peer.name), rows, arguments.device, arguments.threads, notes)

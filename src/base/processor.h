@@ -26,4 +26,11 @@ inline bool takes_sixteen_lanes() {
     return has_sixteen_lanes() && (lanes == nullptr || std::string_view(lanes) != "8");
 }
 
+/// Returns whether host code shades several vertices at once; with PERTEV_LANES=1 in the environment, it is timed
+/// without.
+inline bool shades_in_lanes() {
+    const char* lanes = std::getenv("PERTEV_LANES");
+    return lanes == nullptr || std::string_view(lanes) != "1";
+}
+
 } // namespace pertev

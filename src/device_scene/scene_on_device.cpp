@@ -106,11 +106,13 @@ PartArrays list_instances(const PlacedScene& prepared, const std::vector<bool>& 
     return arrays;
 }
 
-/// Returns whether a material keeps SceneView::has_plain_light.
-bool leaves_light_plain(const MaterialParameters& material) {
-    const bool is_plain_emitter =
-        !material.emission_texture.has_image() && !material.has_coat() && material.alpha_mode == AlphaMode::Opaque;
-    return !material.absorbs() && (!material.is_emitter() || is_plain_emitter);
+SolidAbsorption absorption_of(std::span<const MaterialParameters> materials) {
+    SolidAbsorption absorption = SolidAbsorption::None;
+    for (const MaterialParameters& material : materials) {
+        if (material.absorbs())
+            absorption = max(absorption, material.is_emitter() ? SolidAbsorption::OfEmitters : SolidAbsorption::Some);
+    }
+    return absorption;
 }
 
 struct Materials {
@@ -123,7 +125,7 @@ PartArrays list_materials(const Scene& scene, Materials& materials, SceneView& v
     materials.groups = shading_groups(materials.parameters);
     const bool has_tables = std::ranges::any_of(scene.lights, [](const Light& l) { return parts_of(l.kind).table; });
     view.variant = has_tables ? ShadingVariant::General : variant_of(materials.parameters);
-    view.has_plain_light = !has_tables && std::ranges::all_of(materials.parameters, leaves_light_plain) ? 1 : 0;
+    view.absorption = absorption_of(materials.parameters);
     PartArrays arrays;
     arrays.add(materials.parameters, view.materials);
     arrays.add(materials.groups, view.shading_groups);

@@ -44,6 +44,9 @@ struct InstanceView {
     uint16_t is_thin_wall; // 1 if it is one of SceneView::thin_walls
 };
 
+/// Solids of a scene that absorb by distance: none, some, or also one that emits.
+enum class SolidAbsorption : uint8_t { None, Some, OfEmitters };
+
 struct SceneView {
     const InstanceView* instances;
     const uint32_t* passing;              // one bit each, 32 per word: 1 if rays may pass a surface of the instance
@@ -52,7 +55,7 @@ struct SceneView {
     const MaterialParameters* materials;
     const uint8_t* shading_groups; // [materials] (shading/shading_groups.h)
     ShadingVariant variant;        // shading variant of all materials
-    uint32_t has_plain_light;      // 1 if emitters have neither textures, coats nor holes, and no solid absorbs
+    SolidAbsorption absorption;    // by distance in solids
     const TextureImageView* images;
     const float* linear_from_srgb; // [kSrgbBytes], and [kSrgbWords] if there is an image of depth Srgb16
     LightSetView lights;

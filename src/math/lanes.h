@@ -54,6 +54,13 @@ struct LaneArithmetic {
     friend F clamp(F x, F lo, F hi) { return select(x > lo, select(x < hi, x, hi), lo); }
     friend F safe_sqrt(F a) { return sqrt(select(a > 0.0f, a, F(0.0f))); }
     friend F square(F a) { return a * a; }
+    template <class Of>
+    friend F for_each_lane(F a, const Of& of) {
+        alignas(64) float lanes[F::kLanes];
+        a.store(lanes);
+        for (float& lane : lanes) lane = of(lane);
+        return F::load(lanes);
+    }
     friend auto is_finite(F a) { return MaskOf<F>((bits_of(a) & 0x7f800000u) != 0x7f800000u); }
 };
 

@@ -94,6 +94,11 @@ HD inline T lerp(T a, T b, T t) {
     return a + t * (b - a);
 }
 
+/// Returns of(x), for several numbers at once of each.
+template <class Of>
+HD inline float for_each_lane(float x, const Of& of) {
+    return of(x);
+}
 /// Element of an array; for several indices at once, of each.
 template <class T = float>
 HD inline T gather(const float* from, WordOf<T> index) {

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include <functional>
+
 #include "base/parallel_for.h"
 #include "image/picture_hash.h"
 #include "integrators/path/path_integrator.h"
@@ -115,11 +117,20 @@ ShadingVariant variant_of(const Scene& scene) {
 } // namespace
 
 TEST_CASE("vertices shaded in lanes give the bytes of vertices shaded one by one") {
-    const Scene scene = scene_with(ShadingVariant::PlainDiffuse);
+    const Scene scene = scene_with(ShadingVariant::PlainDiffuse), mixed = scene_with(ShadingVariant::Unstacked);
+    Scene nested = mixed; // with a ball of glass within the one that there is
+    for (const Instance& instance : mixed.instances) {
+        if (mixed.materials[instance.material].kind != MaterialKind::Dielectric) continue;
+        nested.instances.push_back(instance);
+        for (Vec3 Transform::*const row : {&Transform::row0, &Transform::row1, &Transform::row2})
+            nested.instances.back().world_from_local.*row = 0.5f * (instance.world_from_local.*row);
+    }
+    CHECK(nested.instances.size() == mixed.instances.size() + 1);
     Queue queue = Queue::make_cpu();
     const auto check_lanes = [&](const Scene& in_lanes, const RenderSettings& settings) {
         Scene alone = in_lanes;
-        alone.materials.push_back({{.kind = MaterialKind::Conductor}, "unused"});
+        alone.materials.push_back({{.kind = MaterialKind::Dielectric, .emission = {1, 1, 1}}, "unused"});
+        alone.materials.back().transmission_depth = 1;
         const auto hash = [&](const Scene& of) {
             return test::render_hash(test::render(queue, of, test::mixed_scene_camera(), settings));
         };
@@ -136,7 +147,7 @@ TEST_CASE("vertices shaded in lanes give the bytes of vertices shaded one by one
     cases[7].path.max_depth = 1;
     for (const RenderSettings& settings : cases) {
         CAPTURE(&settings - cases.data());
-        check_lanes(scene, settings);
+        for (const Scene& each : {std::cref(scene), std::cref(mixed), std::cref(nested)}) check_lanes(each, settings);
     }
     for (const Rgb sky : {Rgb{0.3f, 0.4f, 0.6f}, Rgb{0, 0, 0}}) {
         Scene under_sky = scene;

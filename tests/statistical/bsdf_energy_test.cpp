@@ -67,9 +67,9 @@ TEST_CASE("the furnace test detects a rough conductor without its second lobe") 
     constexpr uint32_t kPoints = 10'000;
     const Vec3 wo = direction_at(0.9f);
     for (uint32_t i = 0; i < kPoints; i++) {
-        const Vec3 wi = reflect(wo, sample_ggx_visible_normal(wo, 1, even_point(i, kPoints).u));
+        const Vec3 wi = reflect(wo, sample_ggx_visible_normal(wo, 1.0f, even_point(i, kPoints).u));
         if (!(wi.z > 0)) continue;
-        const GgxReflection once = evaluate_ggx_reflection(wo, normalize(wi), 1);
+        const GgxReflection once = evaluate_ggx_reflection(wo, normalize(wi), 1.0f);
         mean += static_cast<double>(once.f / once.pdf) / kPoints;
     }
     CHECK(mean > 0.2);

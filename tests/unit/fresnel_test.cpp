@@ -94,7 +94,7 @@ TEST_CASE("average reflectances agree with their integrals") {
 }
 
 TEST_CASE("Schlick's approximation is exact at normal and grazing incidence") {
-    CHECK(fresnel_schlick(1, {0.04f, 0.5f, 1}) == Rgb{0.04f, 0.5f, 1});
-    CHECK(fresnel_schlick(0, {0.04f, 0.5f, 1}) == Rgb{1, 1, 1});
+    CHECK(fresnel_schlick(1.0f, Rgb{0.04f, 0.5f, 1}) == Rgb{0.04f, 0.5f, 1});
+    CHECK(fresnel_schlick(0.0f, Rgb{0.04f, 0.5f, 1}) == Rgb{1, 1, 1});
     CHECK(f0_from_ior(1.5f) == doctest::Approx(0.04));
 }

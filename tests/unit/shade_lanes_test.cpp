@@ -60,15 +60,25 @@ Scene scattered_scene(test::Random& random, const std::optional<Environment>& en
     return scene;
 }
 
-/// Adds to scattered_scene() a texture of the grey material's colour, normal maps with and without tangents, and
-/// materials that lanes do not shade: a metal, a coat on white, rough diffuse and an unlit one.
+/// Adds to scattered_scene() a texture of the grey material's colour, normal maps with and without tangents,
+/// reflections of several widths, shares of metal and textures, and materials that lanes do not shade: a metal of a
+/// complex index, a coat on white, rough diffuse, an unlit one and smooth plastic.
 Scene mixed_scene(test::Random& random, const std::optional<Environment>& environment) {
     Scene scene = scattered_scene(random, environment);
     scene.images.resize(2);
     scene.images[0].rgba8 = {2, 2, {255, 0, 9, 255, 20, 90, 255, 255, 0, 0, 0, 255, 77, 255, 3, 255}};
     scene.images[1].rgba8 = {2, 1, {128, 90, 255, 255, 255, 10, 140, 255}};
-    TextureRef& color = scene.materials[2].base_color_texture;
+    TextureRef color;
     color.image = 0, color.m00 = 0.5f, color.m01 = 0.25f;
+    scene.materials[2].base_color_texture = color;
+    scene.materials[3].emission_texture =
+        color; // one- and two-sided emitters, of which the latter has a coat and holes
+    scene.materials[4].coat_weight = 0.5f, scene.materials[4].coat_color = {0.9f, 0.5f, 0.1f};
+    scene.materials[4].alpha_mode = AlphaMode::Blend, scene.materials[4].alpha = 0.5f;
+    float greatest = 0;
+    scene.lights[0].kind = LightKind::Goniometric;
+    scene.lights[0].table =
+        make_intensity_table(make_round_table(kPi, [](float angle) { return 4 - angle; }), greatest);
     for (const bool has_tangents : {false, true}) {
         for (const uint32_t mesh : {0u, 1u}) {
             scene.materials.push_back(test::white(0.7f));
@@ -91,13 +101,30 @@ Scene mixed_scene(test::Random& random, const std::optional<Environment>& enviro
             scene.instances.back().world_from_local.translation = {0.5f, 0, 1};
         }
     }
+    for (const float metallic : {0.0f, 0.4f, 1.0f}) {
+        for (const float roughness : {0.05f, 0.3f, 1.0f}) {
+            Material glossy = test::white(metallic == 0.4f && roughness == 0.3f ? 0 : 0.8f);
+            glossy.kind = MaterialKind::MetallicRoughness;
+            glossy.base_color.g = 0.3f * glossy.base_color.r;
+            glossy.metallic = metallic, glossy.roughness = roughness, glossy.ior = 1.1f + roughness;
+            if (metallic == 0.4f) glossy.metallic_texture = color;
+            if (roughness == 1) glossy.roughness_texture = color, glossy.roughness_texture.channel = 2;
+            if (roughness == 0.3f) glossy.normal_texture = color, glossy.normal_texture.image = 1;
+            if (metallic == 1 && roughness == 1) glossy.emission = {1, 2, 3};
+            scene.materials.push_back(glossy);
+            for (const uint32_t mesh : {0u, 1u})
+                scene.instances.push_back({"", mesh, static_cast<uint32_t>(scene.materials.size() - 1), {}});
+        }
+    }
     const auto first = static_cast<uint32_t>(scene.materials.size());
-    for (int i = 0; i < 4; ++i) scene.materials.push_back(test::white(0.5f));
+    for (int i = 0; i < 5; ++i) scene.materials.push_back(test::white(0.5f));
     scene.materials[first].kind = MaterialKind::Conductor;
     scene.materials[first + 1].coat_weight = 1;
     scene.materials[first + 2].base_diffuse_roughness = 0.5f;
     scene.materials[first + 3].kind = MaterialKind::Unlit;
-    for (uint32_t i = 0; i < 4; ++i) scene.instances.push_back({"", i % 2, first + i, {}});
+    scene.materials[first + 4].kind = MaterialKind::MetallicRoughness;
+    scene.materials[first + 4].roughness = 0;
+    for (uint32_t i = 0; i < 5; ++i) scene.instances.push_back({"", i % 2, first + i, {}});
     return scene;
 }
 
@@ -115,15 +142,15 @@ struct PreparedJob {
     }
 };
 
-/// Draws a path and its hit on a material that lanes shade: inside triangles, on edges and at corners, with
-/// perpendicular, grazing and tangential rays.
-void draw_vertex_of(test::Random& random, const SceneView& scene, PathState& path, Hit& hit) {
-    hit = {.t = random.within(0.1f, 5), .instance = random.below(scene.instance_count), .primitive = {}};
-    while (!can_shade_lanes(scene.materials[scene.instances[hit.instance].material]))
-        hit.instance = random.below(scene.instance_count);
-    hit.primitive = random.below(kTriangles);
-    hit.u = random.below(4) == 0 ? 0.5f * static_cast<float>(random.below(3)) : random.unit();
-    hit.v = random.below(4) == 0 ? 0.0f : (1 - hit.u) * random.unit();
+/// Draws a path and its hit with lobes that lanes shade: inside triangles, on edges and at corners, with perpendicular,
+/// grazing and tangential rays.
+void draw_vertex_of(test::Random& random, const SceneView& scene, LaneLobes lobes, PathState& path, Hit& hit) {
+    do {
+        hit = {.t = random.within(0.1f, 5), .instance = random.below(scene.instance_count), .primitive = {}};
+        hit.primitive = random.below(kTriangles);
+        hit.u = random.below(4) == 0 ? 0.5f * static_cast<float>(random.below(3)) : random.unit();
+        hit.v = random.below(4) == 0 ? 0.0f : (1 - hit.u) * random.unit();
+    } while (lane_lobes(scene, {}, hit) != lobes);
     const InstanceView& instance = scene.instances[hit.instance];
     const WorldTriangle triangle = world_triangle(instance, scene.meshes[instance.mesh], hit);
     const uint32_t way = random.below(6);
@@ -158,19 +185,20 @@ struct Counts {
 
 /// Shades `count` random vertices in lanes and one by one.
 template <Features kFeatures>
-void check_vertices(const VertexShading& shading, const PathJob& job, test::Random& random, uint32_t count,
-                    Counts& counts) {
+void check_vertices(const VertexShading& shading, LaneLobes lobes, const PathJob& job, test::Random& random,
+                    uint32_t count, Counts& counts) {
     PathState before[kMaxLanes], paths[kMaxLanes];
     Hit hits[kMaxLanes];
     ShadowRay shadows[kMaxLanes];
     LaneVertices vertices = {.count = count, .paths = {}, .hits = {}};
     for (uint32_t lane = 0; lane < shading.lanes; ++lane) {
-        if (lane < count) draw_vertex_of(random, job.picture.scene, before[lane], hits[lane]);
+        if (lane < count) draw_vertex_of(random, job.picture.scene, lobes, before[lane], hits[lane]);
         paths[lane] = before[lane];
         const uint32_t from = min(lane, count - 1);
         vertices.paths[lane] = paths + from, vertices.hits[lane] = hits + from;
     }
-    const LaneResults results = shading.shade(job, vertices, shadows);
+    const auto shade = lobes == LaneLobes::Diffuse ? shading.shade_diffuse : shading.shade_glossy;
+    const LaneResults results = shade(job, vertices, shadows);
     CHECK((results.goes_on | results.has_shadow_ray) < 1u << count);
     const ShadowRay* shadow = shadows;
     for (uint32_t lane = 0; lane < count; ++lane) {
@@ -220,7 +248,7 @@ std::vector<PathSettings> settings_of_tests() {
 }
 
 template <Features kFeatures>
-void check_all_vertices(const VertexShading& shading) {
+void check_all_vertices(const VertexShading& shading, LaneLobes lobes = LaneLobes::Diffuse) {
     test::Random random(7);
     Environment panorama;
     panorama.image = {4, 2, 3, {}};
@@ -236,8 +264,8 @@ void check_all_vertices(const VertexShading& shading) {
             of.job.settings = settings;
             REQUIRE(can_shade_lanes(of.job));
             for (uint32_t round = 0; round < 60; ++round) {
-                check_vertices<kFeatures>(shading, of.job, random, 1 + round % shading.lanes, counts);
-                check_vertices<kFeatures>(shading, of.job, random, shading.lanes, counts);
+                check_vertices<kFeatures>(shading, lobes, of.job, random, 1 + round % shading.lanes, counts);
+                check_vertices<kFeatures>(shading, lobes, of.job, random, shading.lanes, counts);
             }
         }
     }
@@ -252,6 +280,7 @@ void check_all_vertices(const VertexShading& shading) {
 TEST_CASE("shade lanes: eight vertices have the bits of single ones") {
     check_all_vertices<kPlainDiffuse>(kShadingOf8);
     check_all_vertices<kAllMaterials>(kShadingOf8);
+    check_all_vertices<kAllMaterials>(kShadingOf8, LaneLobes::Glossy);
 }
 
 #if defined(PERTEV_HAS_16_LANES)
@@ -259,29 +288,31 @@ TEST_CASE("shade lanes: sixteen vertices have the bits of single ones") {
     if (!has_sixteen_lanes()) return;
     check_all_vertices<kPlainDiffuse>(kShadingOf16);
     check_all_vertices<kAllMaterials>(kShadingOf16);
+    check_all_vertices<kAllMaterials>(kShadingOf16, LaneLobes::Glossy);
 }
 #endif
 
-TEST_CASE("shade lanes: vertices are single where light is not plain") {
-    const auto takes_lanes = [](const auto& change) {
-        test::Random random(3);
-        Scene scene = mixed_scene(random, {});
-        change(scene);
-        return can_shade_lanes(PreparedJob(std::move(scene)).job);
-    };
-    CHECK(takes_lanes([](Scene&) {}));
-    CHECK(!takes_lanes([](Scene& scene) { scene.materials[3].emission_texture.image = 0; }));
-    CHECK(!takes_lanes([](Scene& scene) { scene.materials[3].coat_weight = 0.5f; }));
-    CHECK(!takes_lanes([](Scene& scene) { scene.materials[4].alpha_mode = AlphaMode::Blend; }));
-    CHECK(takes_lanes([](Scene& scene) { scene.materials[2].alpha_mode = AlphaMode::Blend; }));
-    CHECK(!takes_lanes([](Scene& scene) {
-        scene.materials.back().kind = MaterialKind::Dielectric;
-        scene.materials.back().transmission_depth = 1;
-    }));
-    CHECK(!takes_lanes([](Scene& scene) {
-        scene.lights[0].kind = LightKind::Goniometric;
-        float greatest = 0;
-        scene.lights[0].table =
-            make_intensity_table(make_round_table(kPi, [](float angle) { return 4 - angle; }), greatest);
-    }));
+TEST_CASE("shade lanes: vertices are single where solids absorb on the way") {
+    test::Random random(3);
+    Scene scene = mixed_scene(random, {});
+    scene.materials.push_back({{.kind = MaterialKind::Dielectric}, "glass"});
+    scene.materials.back().transmission_depth = 1;
+    const auto glass = static_cast<uint32_t>(scene.instances.size());
+    scene.instances.push_back({"", 0, static_cast<uint32_t>(scene.materials.size() - 1), {}});
+    Scene glowing = scene;
+    glowing.materials.back().emission = {1, 1, 1};
+    CHECK(!can_shade_lanes(PreparedJob(std::move(glowing)).job));
+    const PreparedJob of(std::move(scene));
+    CHECK(can_shade_lanes(of.job));
+    const SceneView& view = of.job.picture.scene;
+    PathState path = {};
+    path.start = {kNoHit, kNoHit};
+    const Hit hit = {.t = 1, .u = 0.25f, .v = 0.25f, .instance = 0, .primitive = 0};
+    CHECK(lane_lobes(view, path, hit) == LaneLobes::Diffuse);
+    path.start = {glass, 0};
+    CHECK(lane_lobes(view, path, hit) == LaneLobes::None);
+    path.start = {1, 0};
+    CHECK(lane_lobes(view, path, hit) == LaneLobes::Diffuse);
+    path.interior = path.interior.with(3);
+    CHECK(lane_lobes(view, path, hit) == LaneLobes::None);
 }

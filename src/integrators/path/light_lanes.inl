@@ -8,6 +8,7 @@ namespace {
 struct Lights {
     Mask arrives, is_delta, has_distance, is_triangle;
     Vec3s wi, point, normal;
+    Vec2Of<Floats> weights; // barycentrics of the second and third vertex of a triangle
     Rgbs radiance;
     Floats pdf;
     TriangleId targets[kLanes];
@@ -21,7 +22,9 @@ struct LightTable {
     Table<kFields> table;
     WordTable x, y; // triangle: the binary places of both rests; constant environment: its pair of numbers
     TriangleId targets[kLanes];
+    uint32_t numbers[kLanes]; // light numbers, for triangles
     unsigned arrive = 0, are_triangles = 0, are_mirrored = 0, are_two_sided = 0, are_delta = 0, have_distance = 0;
+    unsigned are_varied = 0;   // triangle whose radiance depends on the point or the direction
     unsigned are_constant = 0; // constant environment
     unsigned are_in_tree = 0;  // triangle that a tree has selected: kRestX and kRestY are both rests
 };
@@ -76,7 +79,7 @@ private:
     bool at(Vec3 receiver, LightSample& sample, const Draw& draw) const {
         const LightContext context(receiver);
         const EmittersAtRest at_rest;
-        return draw(SampleOfKind<EmitterVariant::Plain, EmittersAtRest>{view, context, at_rest, sample});
+        return draw(SampleOfKind<EmitterVariant::Coated, EmittersAtRest>{view, context, at_rest, sample});
     }
     void enter_punctual(Vec3 receiver, uint32_t number, float pmf) const {
         LightSample sample;
@@ -92,8 +95,11 @@ private:
     }
     void enter_triangle(uint32_t light, float pmf) const {
         const EmissiveTriangle& from = view.triangles[light];
-        const Rgb radiance = view.emissions[from.material].emission;
+        const SurfaceEmission& surface = view.emissions[from.material];
+        const Rgb radiance = surface.emission;
         const unsigned bit = 1u << lane;
+        if (surface.texture.has_image() || surface.coat_weight > 0) to.are_varied |= bit;
+        to.numbers[lane] = light;
         to.table.set(F::kA, lane, from.a), to.table.set(F::kAb, lane, from.ab), to.table.set(F::kAc, lane, from.ac);
         to.table.set(F::kRadiance, lane, radiance);
         to.table.set(F::kPdf, lane, pmf);
@@ -121,6 +127,27 @@ private:
         if (sample.distance < kInfinity) to.have_distance |= bit;
     }
 };
+
+/// Sets the radiance of lanes whose emitters have textures or coats, and returns the lanes that are dark.
+unsigned vary_radiance(const LightSetView& view, const LightTable& drawn, Vec2Of<Floats> b, Vec3s normal, Vec3s wi,
+                       Rgbs& radiance) {
+    alignas(64) float channels[3][kLanes];
+    radiance.r.store(channels[0]), radiance.g.store(channels[1]), radiance.b.store(channels[2]);
+    unsigned dark = 0;
+    for (unsigned rest = drawn.are_varied; rest != 0; rest &= rest - 1) {
+        const auto lane = static_cast<uint32_t>(__builtin_ctz(rest));
+        const EmissiveTriangle& t = view.triangles[drawn.numbers[lane]];
+        const float u = b.x[lane], v = b.y[lane];
+        const Vec2 uv = (1.0f - u - v) * t.uv0 + u * t.uv1 + v * t.uv2;
+        const Rgb light = emitted_radiance<EmitterVariant::Coated>(view, t.material, uv,
+                                                                   {normal.x[lane], normal.y[lane], normal.z[lane]},
+                                                                   {wi.x[lane], wi.y[lane], wi.z[lane]});
+        channels[0][lane] = light.r, channels[1][lane] = light.g, channels[2][lane] = light.b;
+        if (is_black(light)) dark |= 1u << lane;
+    }
+    radiance = {Floats::load(channels[0]), Floats::load(channels[1]), Floats::load(channels[2])};
+    return dark;
+}
 
 /// Draws lights as draw_from_tree, for lanes of receivers.
 class TreeDraws {
@@ -281,6 +308,11 @@ void sample_lights(const LightSetView& view, unsigned lanes, Vec3s position, Vec
     const Floats pdf = lights.pdf * triangle_pdf(normal, wi, distance_squared);
     const Mask is_triangle = lights.is_triangle;
     lights.arrives = lights.arrives && (!is_triangle || (emits && pdf > 0 && is_finite(pdf)));
+    if (drawn.are_varied != 0) {
+        const unsigned dark = vary_radiance(view, drawn, b, normal, wi, lights.radiance);
+        lights.arrives = lights.arrives && !Mask::of_bits(dark);
+    }
+    lights.weights = b;
     lights.point = select(is_triangle, point, lights.point);
     lights.wi = select(is_triangle, wi, lights.wi);
     lights.normal = select(is_triangle, normalize(normal), lights.normal);

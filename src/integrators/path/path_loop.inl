@@ -133,17 +133,27 @@ public:
         find_hits_of(0, going_on_);
         find_hits_of(going_on_, count_);
         shadows_ = 0;
-        uint32_t missed = 0, alone = 0, together = 0;
+        uint32_t missed = 0, alone = 0, diffuse = 0, glossy = 0;
         for (uint32_t i = 0; i < count_; ++i) {
             if (hits_[i].instance == kNoHit) {
                 missed_[missed++] = i;
-            } else if (paths_[i].depth >= depth_of_lanes_ && is_for_lanes(i)) {
-                together_[together++] = i;
-            } else {
+                continue;
+            }
+            switch (paths_[i].depth >= depth_of_lanes_ ? lane_lobes(this->scene_of(paths_[i]), paths_[i], hits_[i])
+                                                       : LaneLobes::None) {
+            case LaneLobes::None:
                 alone_[alone++] = i;
+                break;
+            case LaneLobes::Diffuse:
+                diffuse_[diffuse++] = i;
+                break;
+            case LaneLobes::Glossy:
+                glossy_[glossy++] = i;
+                break;
             }
         }
-        shade_together(together_, together);
+        shade_together(lanes_.shade_diffuse, diffuse_, diffuse);
+        shade_together(lanes_.shade_glossy, glossy_, glossy);
         shade_alone(alone_, alone);
         VertexWords<Words8> words = {};
         for (uint32_t k = 0; k < missed; ++k) { // a medium may scatter rays that leave the scene
@@ -159,14 +169,8 @@ public:
     }
 
 private:
-    /// Returns whether the vertex of path i is on a material that lanes shade.
-    bool is_for_lanes(uint32_t i) const {
-        const SceneView& scene = this->scene_of(paths_[i]);
-        return scene.variant == ShadingVariant::PlainDiffuse ||
-               can_shade_lanes(scene.materials[scene.instances[hits_[i].instance].material]);
-    }
-
-    void shade_together(const uint32_t* which, uint32_t count) {
+    template <class Shade>
+    void shade_together(const Shade& shade, const uint32_t* which, uint32_t count) {
         const uint32_t lanes = lanes_.lanes;
         for (uint32_t first = 0; first < count; first += lanes) {
             LaneVertices vertices = {.count = min(count - first, lanes), .paths = {}, .hits = {}};
@@ -181,7 +185,7 @@ private:
                 Listener(job_).vertex_in_lanes(*vertices.paths[lane], *vertices.hits[lane]);
                 keys[lane] = key_of(*vertices.paths[lane], true);
             }
-            const LaneResults results = lanes_.shade(job_, vertices, shadow_rays_ + shadows_);
+            const LaneResults results = shade(job_, vertices, shadow_rays_ + shadows_);
             for (uint32_t lane = 0; lane < vertices.count; ++lane) {
                 const uint32_t i = which[first + lane];
                 goes_on_[i] = (results.goes_on >> lane & 1) != 0;
@@ -239,7 +243,8 @@ private:
     const ShadeOnHost<Listener> shade_ = shading_for<Listener>(job_);
     const uint32_t depth_of_lanes_ = can_shade_lanes(job_) ? Listener::depth_of_lanes(job_) : kNoLaneDepth;
     const VertexShading& lanes_ = vertex_shading();
-    uint32_t together_[kPaths], alone_[kPaths], missed_[kPaths]; // paths in lanes, one by one, and without a hit
+    uint32_t diffuse_[kPaths], glossy_[kPaths]; // paths in lanes
+    uint32_t alone_[kPaths], missed_[kPaths];   // paths one by one, and without a hit
     bool goes_on_[kPaths];
     typename Listener::PathData kept_[kPaths];
     typename Listener::ShadowData shadow_data_[kPaths]; // the listener's data of shadow_rays_

@@ -14,7 +14,7 @@ using Floats = Floats8;
 
 namespace pertev {
 
-const VertexShading kShadingOf8 = {kLanes, shade_lanes};
+const VertexShading kShadingOf8 = kShading;
 
 const VertexShading& vertex_shading() {
 #if defined(PERTEV_HAS_16_LANES)
@@ -26,9 +26,11 @@ const VertexShading& vertex_shading() {
 }
 
 bool can_shade_lanes(const PathJob& job) {
-    constexpr Features kAllowed = kAllMaterials | kBatched | kLightTree;
-    return (features_for(job) & ~kAllowed) == 0 && job.picture.scene.has_plain_light != 0 &&
-           job.settings.light == PathLight::Path && job.settings.strategy != LightStrategy::BsdfOnly;
+    constexpr Features kAllowed = kAllMaterials | kBatched | kNested | kLightTree;
+    static const bool takes_lanes = shades_in_lanes();
+    return takes_lanes && (features_for(job) & ~kAllowed) == 0 &&
+           job.picture.scene.absorption != SolidAbsorption::OfEmitters && job.settings.light == PathLight::Path &&
+           job.settings.strategy != LightStrategy::BsdfOnly;
 }
 
 } // namespace pertev

@@ -56,11 +56,10 @@ Features features_of_lanes(const PathJob& job) {
     return job.selects_by_tree ? kPlainDiffuse | kLightTree : kPlainDiffuse;
 }
 
-/// Random numbers of the vertices.
-VertexWords<Words> draw_numbers(const PathJob& job, const LaneVertices& vertices) {
+/// Random numbers of the vertices; for lobes that draw by one, also those of choices.
+VertexWords<Words> draw_numbers(const PathJob& job, const LaneVertices& vertices, bool has_choices) {
     const PathSettings& settings = job.settings;
     WordTable streams, samples, seeds, depths;
-    bool has_choices = false; // roulette
     for (uint32_t lane = 0; lane < kLanes; ++lane) {
         const PathState& path = *vertices.paths[lane];
         const SampleKey key = sample_key<kBatched>(job, path.pixel, path.sample);
@@ -155,11 +154,10 @@ Triangles load_triangles(const SceneView& scene, const LaneVertices& vertices) {
     return triangles;
 }
 
-/// Surface (device_scene/surface.h) of hits, with a diffuse BSDF.
+/// Surface (device_scene/surface.h) of hits, without its BSDF.
 struct Surfaces {
     Vec3s position, error, winding_normal, geometric_normal;
     FrameOf<Floats> frame;
-    Rgbs albedo;
     Floats tilt;
 
     Mask is_consistent(Vec3s wo, Vec3s wi, Floats wo_z, Floats wi_z) const {
@@ -223,7 +221,6 @@ Surfaces make_surfaces(const SceneView& scene, const LaneVertices& vertices, con
     place_hit(triangle, {t.world_from_local, t.local_from_world, t.is_mirrored, t.is_baked}, t.a, t.b, t.c, t.u, t.v);
     Surfaces s;
     s.position = triangle.position, s.error = triangle.error, s.winding_normal = triangle.normal;
-    s.albedo = t.albedo;
     s.geometric_normal = triangle.normal;
     s.tilt = 0.0f;
     Vec3s shading_normal = triangle.normal;
@@ -249,22 +246,20 @@ Surfaces make_surfaces(const SceneView& scene, const LaneVertices& vertices, con
     return s;
 }
 
-/// BsdfValue of the diffuse lobe.
-struct Values {
-    Rgbs f;
-    Floats pdf; // 0: f is not set
-};
+} // namespace
+} // namespace pertev
 
-Values evaluate_diffuse(Rgbs albedo, Floats wo_z, Floats wi_z) {
-    const Floats pdf = select(wo_z * wi_z > 0, abs(wi_z) * kInvPi, Floats(0.0f));
-    return {pdf * albedo, pdf};
-}
+#include "integrators/path/lane_lobes.inl"
+
+namespace pertev {
+namespace {
 
 /// Evaluates the BSDF as Surface::evaluate.
-Values evaluate(const Surfaces& s, Vec3s wo, Vec3s wo_local, Vec3s wi) {
+template <class Lobes>
+Values evaluate(const Surfaces& s, const Lobes& lobes, Vec3s wo, Vec3s wo_local, Vec3s wi) {
     const Vec3s wi_local = s.frame.to_local(wi);
     const RaisedDirectionOf<Floats> from = lower_direction(wi_local, s.tilt);
-    const Values value = evaluate_diffuse(s.albedo, wo_local.z, from.direction.z);
+    const Values value = lobes.evaluate(wo_local, from.direction);
     const Mask is_valid = s.is_consistent(wo, wi, wo_local.z, wi_local.z) && from.slope > 0;
     return {(1.0f / from.slope) * value.f, select(is_valid, value.pdf / from.slope, Floats(0.0f))};
 }
@@ -289,9 +284,28 @@ const SceneView& scene_of(const PathJob& job, const LaneVertices& vertices) {
     return job.picture.scene_of(vertices.paths[0]->pixel);
 }
 
+/// Returns the lanes whose light is not in a transparent part of an emitter (is_hole).
+unsigned without_holes(const PathJob& job, unsigned lanes, const LaneVertices& vertices, const Lights& lights) {
+    const SceneView& scene = scene_of(job, vertices);
+    if (scene.any_alpha == 0) return lanes;
+    for (unsigned rest = lanes & bit_mask(lights.is_triangle); rest != 0; rest &= rest - 1) {
+        const auto lane = static_cast<uint32_t>(__builtin_ctz(rest));
+        const TriangleId target = lights.targets[lane];
+        if (scene.instances[target.instance].has_alpha == 0) continue;
+        const PathState& path = *vertices.paths[lane];
+        const uint32_t key = coin_key(sample_key<kBatched>(job, path.pixel, path.sample), path.depth, true);
+        const AcceptHit accept = {scene, {}, {}, key};
+        if (!accept.passes_alpha(target.instance, target.primitive, lights.weights.x[lane], lights.weights.y[lane]))
+            lanes &= ~(1u << lane);
+    }
+    return lanes;
+}
+
 /// Samples direct light as sample_direct. Returns the lanes that need a shadow ray.
-unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, const Surfaces& surfaces, Vec3s wo,
-                       Vec3s wo_local, const LaneVertices& vertices, const SampleBitsOf<Words>& u, ShadowRay* shadows) {
+template <class Lobes>
+unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, const Surfaces& surfaces,
+                       const Lobes& lobes, Vec3s wo, Vec3s wo_local, const LaneVertices& vertices,
+                       const SampleBitsOf<Words>& u, ShadowRay* shadows) {
     const LightSetView& all = scene_of(job, vertices).lights;
     Lights lights;
     if (features_of_lanes(job) == kPlainDiffuse) {
@@ -300,9 +314,9 @@ unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, c
         const Vec3s normal = surfaces.context_normal(wo);
         sample_lights<kPlainDiffuse | kLightTree>(all, lanes, surfaces.position, normal, u, lights);
     }
-    const Values scattered = evaluate(surfaces, wo, wo_local, lights.wi);
+    const Values scattered = evaluate(surfaces, lobes, wo, wo_local, lights.wi);
     const Mask wants = lights.arrives && scattered.pdf > 0 && !is_black(scattered.f);
-    const unsigned wanted = bit_mask(wants) & lanes;
+    const unsigned wanted = without_holes(job, bit_mask(wants) & lanes, vertices, lights);
     if (wanted == 0) return 0;
     const bool by_mis = job.settings.strategy == LightStrategy::Mis;
     const Floats weight =
@@ -345,16 +359,17 @@ unsigned lanes_at_depth(uint32_t depth, const LaneVertices& vertices) {
 }
 
 /// Samples directions as sample_scattering. Returns the lanes whose paths go on, and moves these paths.
-unsigned sample_scattering(const PathJob& job, unsigned lanes, const Paths& paths, const Surfaces& surfaces, Vec3s wo,
-                           Vec3s wo_local, const LaneVertices& vertices, const VertexWords<Words>& words) {
+template <class Lobes>
+unsigned sample_scattering(const PathJob& job, unsigned lanes, const Paths& paths, const Surfaces& surfaces,
+                           const Lobes& lobes, Vec3s wo, Vec3s wo_local, const LaneVertices& vertices,
+                           const VertexWords<Words>& words) {
     const PathSettings& settings = job.settings;
     const Vec2Of<Floats> u = {unit_interval<Floats>(words.direction.x), unit_interval<Floats>(words.direction.y)};
-    Vec3s drawn = sample_cosine_hemisphere(u);
-    drawn.z = copysign(drawn.z, wo_local.z);
-    const Values value = evaluate_diffuse(surfaces.albedo, wo_local.z, drawn.z);
+    const DrawnDirections drawn = lobes.draw(wo_local, unit_interval<Floats>(words.choices.x), u);
+    const Values value = lobes.evaluate(wo_local, drawn.wi);
     const Rgbs weight = (1.0f / value.pdf) * value.f;
-    Mask goes_on = wo_local.z != 0 && value.pdf > 1e-30f && !is_black(weight);
-    const RaisedDirectionOf<Floats> raised = raise_direction(drawn, surfaces.tilt);
+    Mask goes_on = drawn.is_drawn && wo_local.z != 0 && value.pdf > 1e-30f && !is_black(weight);
+    const RaisedDirectionOf<Floats> raised = raise_direction(drawn.wi, surfaces.tilt);
     const Floats pdf = value.pdf / raised.slope;
     const Vec3s wi = normalize(surfaces.frame.to_world(raised.direction));
     goes_on = goes_on && surfaces.is_consistent(wo, wi, wo_local.z, raised.direction.z) && pdf > 0;
@@ -407,7 +422,10 @@ void add_emission(const PathJob& job, unsigned lanes, const LaneVertices& vertic
         Surface surface = {};
         surface.position = {surfaces.position.x[lane], surfaces.position.y[lane], surfaces.position.z[lane]};
         surface.triangle = {hit.instance, hit.primitive};
-        surface.emission = surface_emission<EmitterVariant::Plain>(scene.lights, material, {});
+        const MeshView& mesh = scene.meshes[scene.instances[hit.instance].mesh];
+        const Vec2 uv = texture_coordinate(mesh, scene.materials[material].emission_texture,
+                                           triangle_indices(mesh, hit.primitive), hit.u, hit.v);
+        surface.emission = surface_emission(scene.lights, material, uv);
         Listeners<> listener(job);
         if (features_of_lanes(job) == kPlainDiffuse) {
             add_surface_emission<kPlainDiffuse>(job, path, hit, surface, listener);
@@ -431,11 +449,12 @@ Paths load_paths(const LaneVertices& vertices) {
     return {{columns[0], columns[1], columns[2]}, {columns[3], columns[4], columns[5]}, Mask::of_bits(are_clamped)};
 }
 
+template <class Lobes>
 [[gnu::flatten]] LaneResults shade_lanes(const PathJob& job, const LaneVertices& vertices, ShadowRay* shadows) {
     const SceneView& scene = scene_of(job, vertices);
     const unsigned all = (1u << vertices.count) - 1;
     const Paths paths = load_paths(vertices);
-    const VertexWords<Words> words = draw_numbers(job, vertices);
+    const VertexWords<Words> words = draw_numbers(job, vertices, Lobes::kHasChoices);
     const Vec3s wo = -paths.direction;
     const Triangles triangles = load_triangles(scene, vertices);
     const Surfaces surfaces = make_surfaces(scene, vertices, triangles, wo);
@@ -446,14 +465,18 @@ Paths load_paths(const LaneVertices& vertices) {
     }
     if (scatter == 0) return {};
     const Vec3s wo_local = surfaces.frame.to_local(wo);
+    Lobes lobes(scene, vertices, triangles.albedo);
+    lobes.see_from(wo_local);
     LaneResults results;
     if (scene.lights.has_lights()) {
         results.has_shadow_ray =
-            sample_direct(job, scatter, paths, surfaces, wo, wo_local, vertices, words.light, shadows);
+            sample_direct(job, scatter, paths, surfaces, lobes, wo, wo_local, vertices, words.light, shadows);
     }
-    results.goes_on = sample_scattering(job, scatter, paths, surfaces, wo, wo_local, vertices, words);
+    results.goes_on = sample_scattering(job, scatter, paths, surfaces, lobes, wo, wo_local, vertices, words);
     return results;
 }
+
+constexpr VertexShading kShading = {kLanes, shade_lanes<DiffuseLobes>, shade_lanes<GlossyLobes>};
 
 } // namespace
 } // namespace pertev

@@ -16,7 +16,7 @@ using Floats = Floats16;
 
 namespace pertev {
 
-const VertexShading kShadingOf16 = {kLanes, shade_lanes};
+const VertexShading kShadingOf16 = kShading;
 
 } // namespace pertev
 

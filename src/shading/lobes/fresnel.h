@@ -73,18 +73,24 @@ HD inline Rgb fresnel_conductor_average(Rgb eta, Rgb k) {
 }
 
 /// Schlick's weight, (1 - cos_o)^5.
-HD inline float schlick_weight(float cos_o) {
-    const float x = clamp(1.0f - cos_o, 0.0f, 1.0f);
+template <class T>
+HD inline T schlick_weight(T cos_o) {
+    const T x = clamp(1.0f - cos_o, 0.0f, 1.0f);
     return x * x * (x * x) * x;
 }
 /// Schlick's approximation; `f0` is the reflectance at normal incidence, and that at grazing incidence is 1.
-HD inline Rgb fresnel_schlick(float cos_o, Rgb f0) {
-    const float w = schlick_weight(cos_o);
+template <class T>
+HD inline RgbOf<T> fresnel_schlick(T cos_o, RgbOf<T> f0) {
+    const T w = schlick_weight(cos_o);
     return {f0.r + (1.0f - f0.r) * w, f0.g + (1.0f - f0.g) * w, f0.b + (1.0f - f0.b) * w};
 }
 /// Average of Schlick's approximation over a cosine-weighted hemisphere, exact.
-HD inline float fresnel_schlick_average(float f0) { return f0 + (1.0f - f0) * (1.0f / 21.0f); }
-HD inline Rgb fresnel_schlick_average(Rgb f0) {
+template <class T>
+HD inline T fresnel_schlick_average(T f0) {
+    return f0 + (1.0f - f0) * (1.0f / 21.0f);
+}
+template <class T>
+HD inline RgbOf<T> fresnel_schlick_average(RgbOf<T> f0) {
     return {fresnel_schlick_average(f0.r), fresnel_schlick_average(f0.g), fresnel_schlick_average(f0.b)};
 }
 /// The fraction of b (x (1 - x)^6) that F82 takes from Schlick's reflectance; `tint` in [0, 1] is the factor at the

@@ -11,7 +11,10 @@
 
 namespace pertev {
 
-HD inline float grazing_lobe_log(float alpha) { return log(1.0f + 1.0f / (alpha * alpha)); }
+template <class T>
+HD inline T grazing_lobe_log(T alpha) {
+    return for_each_lane(1.0f + 1.0f / (alpha * alpha), [](float x) { return log(x); });
+}
 
 /// Samples a direction above the surface; u in [0, 1]^2, alpha in [kSmoothAlpha, 1].
 HD inline Vec3 sample_grazing_lobe(float alpha, Vec2 u) {
@@ -22,7 +25,8 @@ HD inline Vec3 sample_grazing_lobe(float alpha, Vec2 u) {
     return {radius * cos_phi, radius * sin_phi, sqrt(z2)};
 }
 /// Density of sample_grazing_lobe() at `cosine` in [0, 1], 1/sr.
-HD inline float pdf_grazing_lobe(float cosine, float alpha) {
+template <class T>
+HD inline T pdf_grazing_lobe(T cosine, T alpha) {
     return kInvPi * cosine / ((cosine * cosine + alpha * alpha) * grazing_lobe_log(alpha));
 }
 

@@ -18,38 +18,44 @@ namespace pertev {
 
 /// Probabilities of sampling a layer's visible normal (or its mirror direction), its grazing lobe, and what lies
 /// beneath.
-struct LayerShares {
-    float specular, more, beneath;
+template <class T>
+struct LayerSharesOf {
+    T specular, more, beneath;
 };
+using LayerShares = LayerSharesOf<float>;
 /// Computes the shares from the energies seen from wo. Visible normals keep at least 1/16, against fireflies where
 /// the energy seen from wo does not predict the value at wi.
-HD inline LayerShares layer_shares(float once, float more, float beneath) {
-    LayerShares shares = {};
-    shares.specular = more + beneath > 0 ? max(once / (once + more + beneath), 0.0625f) : 1.0f;
-    const float rest = more + beneath > 0 ? (1.0f - shares.specular) / (more + beneath) : 0.0f;
+template <class T>
+HD inline LayerSharesOf<T> layer_shares(T once, T more, T beneath) {
+    const MaskOf<T> has_rest = more + beneath > 0;
+    LayerSharesOf<T> shares = {};
+    shares.specular = select(has_rest, max(once / (once + more + beneath), T(0.0625f)), T(1.0f));
+    const T rest = select(has_rest, (1.0f - shares.specular) / (more + beneath), T(0.0f));
     shares.more = rest * more;
     shares.beneath = rest * beneath;
     return shares;
 }
 
-struct SchlickLobe {
-    Rgb base_color; // [0, 1], the metal's reflectance at normal incidence
-    float metallic; // [0, 1]
-    float alpha;    // GGX width = roughness^2, [0, 1]
-    float f0;       // reflectance of the coat at normal incidence, [0, 1]: f0_from_ior(ior)
+/// `T` is float, or several floats at once on the host (math/lanes.h), for lobes that are not smooth.
+template <class T>
+struct SchlickLobeOf {
+    RgbOf<T> base_color; // [0, 1], the metal's reflectance at normal incidence
+    T metallic;          // [0, 1]
+    T alpha;             // GGX width = roughness^2, [0, 1]
+    T f0;                // reflectance of the coat at normal incidence, [0, 1]: f0_from_ior(ior)
 
     struct Average {
-        float lost, schlick; // for the lobe with F = 1
-        float coat_more;     // factor of the compensating lobe of the coat
-        float coat;          // the coat's albedo
-        Rgb more;            // factor of the compensating lobe, coat and metal mixed
+        T lost, schlick; // for the lobe with F = 1
+        T coat_more;     // factor of the compensating lobe of the coat
+        T coat;          // the coat's albedo
+        RgbOf<T> more;   // factor of the compensating lobe, coat and metal mixed
     };
     struct Albedo {
-        float lost, schlick; // for the lobe with F = 1; schlick is metal_schlick()
-        float coat;          // albedo of the compensated coat, [0, 1]
+        T lost, schlick; // for the lobe with F = 1; schlick is metal_schlick()
+        T coat;          // albedo of the compensated coat, [0, 1]
     };
 
-    HD bool is_smooth() const { return !(alpha >= kSmoothAlpha); }
+    HD bool is_smooth() const { return any(!(alpha >= kSmoothAlpha)); }
     HD LobeClass lobe_class() const { return is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
     HD float energy() const { return max_component(fresnel_schlick_average(mixed_f0())); }
     HD Gloss gloss(float cos_o) const {
@@ -63,7 +69,7 @@ struct SchlickLobe {
         if (is_smooth()) branches.mirror = fresnel_schlick(abs(wo.z), mixed_f0());
         return branches;
     }
-    HD Rgb mixed_f0() const { return lerp(grey(f0), base_color, metallic); }
+    HD RgbOf<T> mixed_f0() const { return lerp(RgbOf<T>{f0, f0, f0}, base_color, metallic); }
 
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
         if (!(wo.z * wi.z > 0)) return {};
@@ -92,13 +98,13 @@ struct SchlickLobe {
 
     // coat_lobe.h uses the following functions too.
 
-    HD Rgb value_of(const GgxReflection& once, float cos_i, const Average& average, const Albedo& at_o,
-                    const Albedo& at_i) const {
-        const float cosine = cos_i * kInvPi;
-        return once.f * fresnel_schlick(once.cos_h, mixed_f0()) +
+    HD RgbOf<T> value_of(const GgxReflectionOf<T>& once, T cos_i, const Average& average, const Albedo& at_o,
+                         const Albedo& at_i) const {
+        const T cosine = cos_i * kInvPi;
+        return once.f * fresnel_schlick<T>(once.cos_h, mixed_f0()) +
                (cosine * at_o.lost * at_i.lost / average.lost) * average.more;
     }
-    HD float pdf_of(const GgxReflection& once, float cos_i, float p_specular, float p_more) const {
+    HD T pdf_of(const GgxReflectionOf<T>& once, T cos_i, T p_specular, T p_more) const {
         return p_specular * once.pdf + p_more * pdf_grazing_lobe(cos_i, alpha);
     }
 
@@ -121,29 +127,29 @@ struct SchlickLobe {
 
     HD Average make_average() const {
         Average a = {};
-        a.lost = is_smooth() ? 0.0f : metal_average_lost(alpha);
-        a.schlick = is_smooth() ? 1.0f / 21.0f : metal_average_schlick(alpha);
+        a.lost = is_smooth() ? T(0.0f) : metal_average_lost(alpha);
+        a.schlick = is_smooth() ? T(1.0f / 21.0f) : metal_average_schlick(alpha);
         a.coat_more = multiple_scattering_tint(fresnel_schlick_average(f0), a.lost);
         a.coat = f0 * (1.0f - a.lost - a.schlick) + a.schlick + a.lost * a.coat_more;
-        const Rgb metal_more = multiple_scattering_tint(fresnel_schlick_average(base_color), a.lost);
-        a.more = lerp(grey(a.coat_more), metal_more, metallic);
+        const RgbOf<T> metal_more = multiple_scattering_tint(fresnel_schlick_average(base_color), a.lost);
+        a.more = lerp(RgbOf<T>{a.coat_more, a.coat_more, a.coat_more}, metal_more, metallic);
         return a;
     }
-    HD Albedo albedo_at(float cosine, const Average& average) const {
+    HD Albedo albedo_at(T cosine, const Average& average) const {
         Albedo a = {};
-        a.lost = is_smooth() ? 0.0f : metal_lost(cosine, alpha);
+        a.lost = is_smooth() ? T(0.0f) : metal_lost(cosine, alpha);
         a.schlick = is_smooth() ? schlick_weight(cosine) : metal_schlick(cosine, alpha);
-        a.coat = min((1.0f - a.lost) * (f0 + (1.0f - f0) * a.schlick) + a.lost * average.coat_more, 1.0f);
+        a.coat = min((1.0f - a.lost) * (f0 + (1.0f - f0) * a.schlick) + a.lost * average.coat_more, T(1.0f));
         return a;
     }
-
-private:
-    HD LayerShares make_shares(const Average& average, const Albedo& at_o, float beneath) const {
-        const float specular_f0 = max_component(mixed_f0());
-        const float once = (1.0f - at_o.lost) * (specular_f0 + (1.0f - specular_f0) * at_o.schlick);
-        const float more = at_o.lost * max_component(average.more);
-        return layer_shares(once, more, beneath * (1.0f - at_o.coat));
+    HD LayerSharesOf<T> make_shares(const Average& average, const Albedo& at_o, T beneath) const {
+        const T specular_f0 = max_component(mixed_f0());
+        const T once = (1.0f - at_o.lost) * (specular_f0 + (1.0f - specular_f0) * at_o.schlick);
+        const T more = at_o.lost * max_component(average.more);
+        return layer_shares<T>(once, more, beneath * (1.0f - at_o.coat));
     }
 };
+
+using SchlickLobe = SchlickLobeOf<float>;
 
 } // namespace pertev
