@@ -28,8 +28,8 @@ void write_file_atomically(const std::filesystem::path& path, std::span<const st
 void write_generation(const std::filesystem::path& path, const std::filesystem::path& previous,
                       std::span<const std::byte> bytes);
 
-/// Returns the bytes that are free where `target`, a path without links, lies or would; nothing if the system does not
-/// tell.
+/// Returns the bytes that are free where `target`, a path without links, lies or would; nothing if the system reports
+/// no number.
 std::optional<uint64_t> free_disk_bytes(const std::filesystem::path& target);
 
 /// Throws the Error(FileWrite) that write_file_atomically would throw for a path that cannot be written. It is for

@@ -2,8 +2,8 @@
 
 // Second stage: temporal mean of each signal and of its square, over the frames that saw the same surface point.
 //
-// Sources: Schied et al. 2017 (above), section 4.1; NVIDIA, "Fast Denoising with Self-Stabilizing Recurrent Blurs",
-// GDC 2020 (a second mean over few frames, to which the long one is clamped).
+// Sources: Schied et al. 2017 (reconstruction.h), section 4.1; NVIDIA, "Fast Denoising with Self-Stabilizing Recurrent
+// Blurs", GDC 2020 (a second mean over few frames, to which the long one is clamped).
 
 #include "denoise/reproject.h"
 #include "denoise/temporal_gradients_view.h"

@@ -3,7 +3,7 @@
 // Third stage: history clamping. Long means are clamped to what recent frames show, and the variance of the result is
 // estimated: over time, or over neighbours if few frames have seen the surface point.
 //
-// Sources: Schied et al. 2017, section 4.2; NVIDIA GDC 2020 as in accumulate_signals.h.
+// Sources: Schied et al. 2017 (reconstruction.h), section 4.2; NVIDIA, GDC 2020 (accumulate_signals.h).
 
 #include "denoise/reconstruction_view.h"
 #include "render/row_band.h"

@@ -2,7 +2,7 @@
 
 // Splits the light of one sample into signals and divides them by the reflectance of the surface (demodulation).
 //
-// Source: Schied et al. 2017 (denoise/reconstruction.h), section 3.
+// Source: Schied et al. 2017 (reconstruction.h), section 3.
 
 #include "denoise/reconstruction_view.h"
 

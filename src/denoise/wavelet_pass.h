@@ -4,7 +4,7 @@
 // object) and stops where light differs by more than its own deviation explains.
 //
 // Sources: Dammertz et al., "Edge-Avoiding A-Trous Wavelet Transform for fast Global Illumination Filtering", HPG 2010;
-// Schied et al. 2017, section 4.4 (variance in the weight of light, and filtered along).
+// Schied et al. 2017 (reconstruction.h), section 4.4 (variance in the weight of light, and filtered along).
 
 #include "denoise/reconstruction_view.h"
 #include "render/row_band.h"
