@@ -1,8 +1,21 @@
 # Switches the CUDA language on where nvcc is found. PERTEV_HAS_CUDA says what was decided. With PERTEV_CUDA=CHECK, on a
 # machine without a GPU, kernels are compiled to PTX in order to see that they compile; the program has their C++ only.
+# PERTEV_CUDA=GPU compiles for the GPUs of this machine, as ./setup.sh does, and leaves CUDA out if there is none.
 
 set(PERTEV_HAS_CUDA OFF)
-if(NOT PERTEV_CUDA STREQUAL "OFF")
+set(gpus "")
+if(PERTEV_CUDA STREQUAL "GPU")
+  execute_process(COMMAND nvidia-smi --query-gpu=compute_cap --format=csv,noheader OUTPUT_VARIABLE gpus ERROR_QUIET)
+  string(REGEX MATCHALL "[0-9]+[.][0-9]+\n" gpus "${gpus}")
+  list(REMOVE_DUPLICATES gpus)
+  list(TRANSFORM gpus REPLACE "([0-9]+)[.]([0-9]+)\n" "\\1\\2-real")
+  if(gpus AND NOT CMAKE_CUDA_ARCHITECTURES)
+    set(CMAKE_CUDA_ARCHITECTURES ${gpus} CACHE STRING "GPU architectures to compile for")
+  endif()
+endif()
+if(PERTEV_CUDA STREQUAL "GPU" AND NOT gpus)
+  message(STATUS "CUDA: off (no driver lists a GPU; PERTEV_CUDA=ON builds with CUDA nevertheless)")
+elseif(NOT PERTEV_CUDA STREQUAL "OFF")
   include(CheckLanguage)
   check_language(CUDA)
   if(CMAKE_CUDA_COMPILER)
