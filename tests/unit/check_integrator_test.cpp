@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "render/light_paths/light_path_layers.h"
 #include "session/check_integrator.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/render_scenes.h"
