@@ -221,7 +221,8 @@ void SceneOnDevice::update(Queue& queue, const PlacedScene& prepared, uint32_t p
     if ((parts & kPartGeometry) != 0) closed_meshes_.clear();
     if ((parts & (kPartGeometry | kPartInstances | kPartMaterials)) != 0) {
         update_nesting(queue, prepared);
-        if ((parts & (kPartGeometry | kPartInstances)) != 0 || has_other_walls || has_media(*prepared.scene)) {
+        const bool may_have_other_media = has_media(*prepared.scene) || view_.has_media != 0;
+        if ((parts & (kPartGeometry | kPartInstances)) != 0 || has_other_walls || may_have_other_media) {
             update_crossed(queue, prepared);
         }
     }

@@ -48,7 +48,7 @@ struct MaterialParameters {
     AlphaMode alpha_mode = AlphaMode::Opaque;
     MetalFresnel metal_fresnel = MetalFresnel::Schlick; // for MetallicRoughness
     MicrofacetDistribution microfacet_distribution = MicrofacetDistribution::Ggx;
-    MicrofacetEnergy energy = MicrofacetEnergy::Compensated; // this and the one above: not of coats and thin walls
+    MicrofacetEnergy energy = MicrofacetEnergy::Compensated; // this and the one above: not of coats
     FuzzModel fuzz_model = FuzzModel::Charlie;
 
     // The front of a triangle is the side from which its corners run counter-clockwise in the mesh's own space,

@@ -136,7 +136,8 @@ TEST_CASE("vertices shaded in lanes give the bytes of vertices shaded one by one
         };
         CHECK(hash(in_lanes) == hash(alone));
     };
-    std::vector<RenderSettings> cases(8, odd_settings());
+    std::vector<RenderSettings> cases(9, odd_settings());
+    cases[8].path.light_choice = LightSelection::Tree;
     cases[0].aovs = 0;
     cases[1].path.max_depth = 1;
     cases[2].path.clamp = 0.5f;

@@ -217,6 +217,13 @@ TEST_CASE("mitsuba: phong, ward, roughdiffuse and coating are the nearest, with 
     CHECK(coat.coat_roughness == doctest::Approx(std::sqrt(0.1)));
     CHECK(coat.coat_roughness_anisotropy == doctest::Approx(std::sqrt(0.3 / 0.9)));
     CHECK(!coat.has_anisotropy());
+    const std::string inner = bsdf_of("roughcoating", bitmap_of("alpha", "") + bsdf_of("diffuse"));
+    const Material twice = load_bsdf(bsdf_of("roughcoating", number_of("alpha", 0.25) + inner), "0.6.0").material;
+    CHECK(twice.coat_roughness == 0.5f); // the outer one counts
+    CHECK(!twice.coat_roughness_texture.has_image());
+    const MitsubaMaterial varied =
+        load_bsdf(bsdf_of("coating", bitmap_of("thickness", "") + bsdf_of("diffuse")), "0.6.0");
+    CHECK(varied.messages.left_out().size() == 1);
 }
 
 TEST_CASE("mitsuba: principled has its parameters") {

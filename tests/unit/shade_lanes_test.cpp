@@ -240,10 +240,11 @@ void check_vertices(const VertexShading& shading, LaneLobes lobes, const PathJob
 }
 
 std::vector<PathSettings> settings_of_tests() {
-    std::vector<PathSettings> settings(4, PathSettings{.max_depth = kMaxDepth});
+    std::vector<PathSettings> settings(5, PathSettings{.max_depth = kMaxDepth});
     settings[1].clamp = 0.2f, settings[1].roulette = Roulette::Throughput, settings[1].roulette_depth = 1;
     settings[2].sampler = SamplerKind::Independent, settings[2].roulette = Roulette::NearCubeRoot;
     settings[3].roulette_depth = 100, settings[3].seed = 5;
+    settings[4].strategy = LightStrategy::NeeOnly;
     return settings;
 }
 
@@ -262,6 +263,7 @@ void check_all_vertices(const VertexShading& shading, LaneLobes lobes = LaneLobe
         CHECK(features_for(of.job) == kFeatures);
         for (const PathSettings& settings : settings_of_tests()) {
             of.job.settings = settings;
+            of.job.ends_by_nee = settings.strategy == LightStrategy::NeeOnly;
             REQUIRE(can_shade_lanes(of.job));
             for (uint32_t round = 0; round < 60; ++round) {
                 check_vertices<kFeatures>(shading, lobes, of.job, random, 1 + round % shading.lanes, counts);

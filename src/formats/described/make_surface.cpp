@@ -76,6 +76,7 @@ void set_coat_roughness(Surface& surface, const Surface& reflection) {
     material.coat_roughness_texture = from.roughness_texture;
     material.coat_roughness_anisotropy = from.specular_roughness_anisotropy;
     material.coat_anisotropy_rotation = from.anisotropy_rotation;
+    std::erase_if(surface.images, [](const SlotImage& use) { return use.slot == &M::coat_roughness_texture; });
     for (SlotImage image : reflection.images) {
         if (image.slot != &M::roughness_texture) continue;
         image.slot = &M::coat_roughness_texture;

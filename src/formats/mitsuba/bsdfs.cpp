@@ -277,7 +277,10 @@ Surface Bsdfs::coating(Object& bsdf) {
     const TextureValue absorption = textures_.color(bsdf, "sigma_a", ColorUse::Index, grey(0));
     if (absorption.has_image())
         bsdf.parameters.leave_out({"sigma_a"}, "the absorption of a coat has no texture", reading_.sink());
-    const float both_ways = 2 * textures_.number(bsdf, "thickness", 1).factor.r;
+    const TextureValue thickness = textures_.number(bsdf, "thickness", 1);
+    if (thickness.has_image())
+        bsdf.parameters.leave_out({"thickness"}, "the thickness of a coat has no texture", reading_.sink());
+    const float both_ways = 2 * thickness.factor.r;
     const Rgb depth = both_ways * (absorption.has_image() ? Rgb{} : absorption.factor);
     for_each_part(surface, [&](Surface& part) {
         Material& material = part.material;

@@ -52,7 +52,7 @@ public:
             const TriangleIndices i = triangle_indices(mesh, hit.primitive);
             table.set(kMetallic, lane,
                       textured_share(scene, mesh, material.metallic, material.metallic_texture, i, hit.u, hit.v));
-            table.set(kAlpha, lane, alpha_at(scene, hit));
+            table.set(kAlpha, lane, ggx_width_at(scene, hit));
             table.set(kF0, lane, f0_from_ior(material.ior));
         }
         const Floats metallic = table.get(kMetallic);

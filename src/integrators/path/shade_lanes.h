@@ -31,8 +31,8 @@ struct LaneResults {
 /// A function that shades vertices, and the number of vertices that it takes at a time.
 struct VertexShading {
     uint32_t lanes;
-    /// Shades vertices of a job for which can_shade_lanes holds, on materials for which it holds. Stores the shadow
-    /// rays of lanes that need one, one after the other, from `shadows` on.
+    /// Both shade vertices of a job for which can_shade_lanes holds, whose lane_lobes() are Diffuse or Glossy. They
+    /// store the shadow rays of lanes that need one, one after the other, from `shadows` on.
     LaneResults (*shade_diffuse)(const PathJob& job, const LaneVertices& vertices, ShadowRay* shadows);
     LaneResults (*shade_glossy)(const PathJob& job, const LaneVertices& vertices, ShadowRay* shadows);
 };
@@ -45,14 +45,14 @@ extern const VertexShading kShadingOf16;
 /// Returns the function for the widest lanes that this computer's processor has.
 const VertexShading& vertex_shading();
 
-/// Returns whether `shade` may be called for the job, for vertices on some materials.
+/// Returns whether vertices of the job may be shaded in lanes, where lane_lobes() says so.
 bool can_shade_lanes(const PathJob& job);
 
 /// Lobes that lanes shade, with textures and normal maps.
 enum class LaneLobes : uint8_t { None, Diffuse, Glossy };
 
 /// Returns the GGX width of metallic-roughness at a hit.
-inline float alpha_at(const SceneView& scene, const Hit& hit) {
+inline float ggx_width_at(const SceneView& scene, const Hit& hit) {
     const InstanceView& instance = scene.instances[hit.instance];
     const MeshView& mesh = scene.meshes[instance.mesh];
     const MaterialParameters& material = scene.materials[instance.material];
@@ -74,7 +74,7 @@ inline LaneLobes lane_lobes(const SceneView& scene, const PathState& path, const
         if (before != kNoHit && scene.materials[scene.instances[before].material].absorbs()) return LaneLobes::None;
     }
     if (!is_glossy) return LaneLobes::Diffuse;
-    return alpha_at(scene, hit) >= kSmoothAlpha ? LaneLobes::Glossy : LaneLobes::None;
+    return ggx_width_at(scene, hit) >= kSmoothAlpha ? LaneLobes::Glossy : LaneLobes::None;
 }
 
 } // namespace pertev

@@ -51,11 +51,6 @@ struct WordTable {
     }
 };
 
-/// Features of a job whose vertices may be shaded in lanes.
-Features features_of_lanes(const PathJob& job) {
-    return job.selects_by_tree ? kPlainDiffuse | kLightTree : kPlainDiffuse;
-}
-
 /// Random numbers of the vertices; for lobes that draw by one, also those of choices.
 VertexWords<Words> draw_numbers(const PathJob& job, const LaneVertices& vertices, bool has_choices) {
     const PathSettings& settings = job.settings;
@@ -308,11 +303,11 @@ unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, c
                        const SampleBitsOf<Words>& u, ShadowRay* shadows) {
     const LightSetView& all = scene_of(job, vertices).lights;
     Lights lights;
-    if (features_of_lanes(job) == kPlainDiffuse) {
-        sample_lights<kPlainDiffuse>(all, lanes, surfaces.position, {}, u, lights);
-    } else {
+    if (job.selects_by_tree) {
         const Vec3s normal = surfaces.context_normal(wo);
-        sample_lights<kPlainDiffuse | kLightTree>(all, lanes, surfaces.position, normal, u, lights);
+        sample_lights<kLightTree>(all, lanes, surfaces.position, normal, u, lights);
+    } else {
+        sample_lights<kPlainDiffuse>(all, lanes, surfaces.position, {}, u, lights);
     }
     const Values scattered = evaluate(surfaces, lobes, wo, wo_local, lights.wi);
     const Mask wants = lights.arrives && scattered.pdf > 0 && !is_black(scattered.f);
@@ -389,7 +384,6 @@ unsigned sample_scattering(const PathJob& job, unsigned lanes, const Paths& path
     }
     if (going == 0) return 0;
     const Vec3s origin = surfaces.origin_towards(wi), normal = surfaces.context_normal(wo);
-    const bool has_tree = features_of_lanes(job) != kPlainDiffuse;
     alignas(64) float rows[kLanes][8];
     store_columns({origin.x, origin.y, origin.z, wi.x, wi.y, wi.z, throughput.r, throughput.g}, rows_of(rows));
     for (unsigned rest = going; rest != 0; rest &= rest - 1) {
@@ -401,7 +395,7 @@ unsigned sample_scattering(const PathJob& job, unsigned lanes, const Paths& path
         path.throughput = {row[6], row[7], throughput.b[lane]};
         path.bsdf_pdf = pdf[lane];
         path.start = {vertices.hits[lane]->instance, vertices.hits[lane]->primitive};
-        if (has_tree) path.normal = {normal.x[lane], normal.y[lane], normal.z[lane]};
+        if (job.selects_by_tree) path.normal = {normal.x[lane], normal.y[lane], normal.z[lane]};
         path.depth += 1;
         path.rough_depth += 1;
     }
@@ -427,10 +421,10 @@ void add_emission(const PathJob& job, unsigned lanes, const LaneVertices& vertic
                                            triangle_indices(mesh, hit.primitive), hit.u, hit.v);
         surface.emission = surface_emission(scene.lights, material, uv);
         Listeners<> listener(job);
-        if (features_of_lanes(job) == kPlainDiffuse) {
-            add_surface_emission<kPlainDiffuse>(job, path, hit, surface, listener);
+        if (job.selects_by_tree) {
+            add_surface_emission<kLightTree>(job, path, hit, surface, listener);
         } else {
-            add_surface_emission<kPlainDiffuse | kLightTree>(job, path, hit, surface, listener);
+            add_surface_emission<kPlainDiffuse>(job, path, hit, surface, listener);
         }
     }
 }

@@ -170,7 +170,8 @@ bool is_stretched(const Material& material) {
 const TextureRef& tangent_map(const Material& material) {
     if (material.normal_texture.has_image()) return material.normal_texture;
     if (material.has_coat() && material.coat_normal_texture.has_image()) return material.coat_normal_texture;
-    return material.has_anisotropy() ? material.anisotropy_texture : material.coat_anisotropy_texture;
+    const bool is_of_coat = material.has_coat_anisotropy() && !material.has_anisotropy();
+    return is_of_coat ? material.coat_anisotropy_texture : material.anisotropy_texture;
 }
 
 /// Adds copies of meshes that need tangents for several sets, and redirects instances to theirs.

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/message_text.h"
 #include "base/stopwatch.h"
+#include "device_scene/crossed_surfaces.h"
 #include "device_scene/pack_texels.h"
 #include "formats/read_camera_path.h"
 #include "session/check_integrator.h"
@@ -122,10 +123,11 @@ void report_light_choice(const PictureOptions& options, const RenderSettings& se
                          Sink& sink) {
     if (settings.path.light_choice != LightSelection::Tree) return;
     const bool of_frames = options.real_time || settings.is_denoised();
-    const bool has_code = !has_media(*prepared.scene) || has_tree_in_media(settings, of_frames);
-    const char* const why = prepared.motions != nullptr                ? "the tree holds lights at rest"
-                            : !has_code                                ? "frames and layers of media have no tree"
-                            : settings.irradiance                      ? "a light meter samples lights by power"
+    const bool has_media_code = has_media(*prepared.scene) || !find_thin_walls(prepared).empty();
+    const bool has_code = !has_media_code || has_tree_in_media(settings, of_frames);
+    const char* const why = prepared.motions != nullptr ? "the tree holds lights at rest"
+                            : !has_code                 ? "frames and layers of media and thin walls have no tree"
+                            : settings.irradiance       ? "a light meter samples lights by power"
                             : prepared.lights.tree->light_count() == 0 ? "no light has a position"
                                                                        : nullptr;
     if (why == nullptr) return;
