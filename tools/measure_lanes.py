@@ -48,7 +48,7 @@ def main():
             rows.append([name, *rates, float(f"{rates[-1] / rates[0]:.3g}")])
             print(*rows[-1], sep="\t", flush=True)
     if given.output:
-        columns = [("picture", "picture", None), *((key, f"{key}, Msamples/s", None) for key, _ in WIDTHS), ("ratio", "sixteen to one", None)]
+        columns = [("picture", "picture", None), *((key, key, "Msamples/s") for key, _ in WIDTHS), ("ratio", "sixteen to one", None)]
         write_measurement(given.output, given.pertev, f"Lanes of shading, {machine('cpu')}", columns, rows, "cpu", os.cpu_count(),
                           ["The third is eight where the processor has no AVX-512."])
 
