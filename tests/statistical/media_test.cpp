@@ -53,11 +53,7 @@ Camera parallel_view(Vec3 from, float height) {
 }
 
 RenderSettings settings_in_media(uint32_t size, uint32_t samples, uint32_t max_depth) {
-    RenderSettings settings;
-    settings.width = settings.height = size;
-    settings.samples = samples;
-    settings.path.max_depth = max_depth;
-    settings.path.roulette_depth = 1000;
+    RenderSettings settings = test::square_settings(size, samples, max_depth);
     settings.path.light_choice = LightSelection::Power;
     settings.photon_map = {.photons = 400, .radius = 0.1f};
     return settings;

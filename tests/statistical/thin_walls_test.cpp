@@ -51,15 +51,6 @@ Scene floor_under_panes(const std::vector<float>& heights, Vec3 direction, const
     return scene;
 }
 
-RenderSettings settings_of(uint32_t size, uint32_t samples, uint32_t max_depth) {
-    RenderSettings settings;
-    settings.width = settings.height = size;
-    settings.samples = samples;
-    settings.path.max_depth = max_depth;
-    settings.path.roulette_depth = 1000;
-    return settings;
-}
-
 double component_of(Rgb color, std::size_t channel) {
     return static_cast<double>(channel == 0 ? color.r : channel == 1 ? color.g : color.b);
 }
@@ -67,7 +58,7 @@ double component_of(Rgb color, std::size_t channel) {
 /// Returns the picture of a spot of the floor, 1 m wide, about (x, 0, 0) from close above it.
 Image picture_of_floor(const Scene& scene, float x, uint32_t max_depth, PathBody body = PathBody::Loop) {
     Queue queue = test::requested_queue();
-    RenderSettings settings = settings_of(4, 2, max_depth);
+    RenderSettings settings = test::square_settings(4, 2, max_depth);
     settings.body = body;
     return test::render(queue, scene, test::camera_down({x, 0.5f, 0}, 1), settings).picture;
 }
@@ -93,7 +84,7 @@ Scene floor_under_lit_pane(float roughness = 0) {
 
 test::PictureEstimate estimate(const Scene& scene, LightStrategy strategy, uint32_t max_depth, uint32_t first_seed,
                                LightSelection lights = LightSelection::Power) {
-    RenderSettings settings = settings_of(6, static_cast<uint32_t>(test::effort(64, 512)), max_depth);
+    RenderSettings settings = test::square_settings(6, static_cast<uint32_t>(test::effort(64, 512)), max_depth);
     settings.path.strategy = strategy;
     settings.path.light_choice = lights;
     settings.path.sampler = SamplerKind::Independent;
@@ -170,7 +161,7 @@ TEST_CASE("MIS agrees with BSDF sampling through a pane in fog and with lights f
     CHECK(p_value(estimate(several, LightStrategy::Mis, 4, 1, LightSelection::Tree), in_vacuum) > 0.001);
     Queue queue = Queue::make_cpu();
     for (const LightSelection lights : {LightSelection::Power, LightSelection::Tree}) {
-        RenderSettings settings = settings_of(16, 4, 5);
+        RenderSettings settings = test::square_settings(16, 4, 5);
         settings.path.light_choice = lights;
         const auto hash = [&](PathBody body) {
             settings.body = body;
@@ -190,7 +181,7 @@ TEST_CASE("layers of light paths count a pane as a specular transmission") {
     for (const char* text : {"through=LS<T>DE", "beside=LDE", "by_name=LS<T'pane'>DE", "others=L[^D]+DE"}) {
         expressions.push_back(parse_light_path(text));
     }
-    RenderSettings settings = settings_of(8, 2, 2);
+    RenderSettings settings = test::square_settings(8, 2, 2);
     settings.light_paths = std::make_shared<const LightPathLayers>(bind_to_scene(std::move(expressions), scene));
     Queue cpu = Queue::make_cpu(), queue = test::requested_queue();
     const Camera camera = test::camera_down({0, 0.5f, 0}, 2); // half of the picture is under the pane

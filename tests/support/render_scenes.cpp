@@ -155,6 +155,15 @@ RenderResult render(Queue& queue, const Scene& scene, const Camera& camera, cons
     return render_picture(queue, prepare_scene(scene, prepare, messages), camera, settings);
 }
 
+RenderSettings square_settings(uint32_t size, uint32_t samples, uint32_t max_depth) {
+    RenderSettings settings;
+    settings.width = settings.height = size;
+    settings.samples = samples;
+    settings.path.max_depth = max_depth;
+    settings.path.roulette_depth = 1000;
+    return settings;
+}
+
 RenderSettings layered_settings() {
     RenderSettings settings;
     settings.width = 24, settings.height = 16;

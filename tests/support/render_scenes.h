@@ -34,6 +34,9 @@ RenderResult render(Queue& queue, const Scene& scene, const Camera& camera, cons
 /// Returns the mean of all numbers of a picture.
 double mean_of(const Image& picture);
 
+/// Settings of a square picture, whose paths roulette does not end.
+RenderSettings square_settings(uint32_t size, uint32_t samples, uint32_t max_depth);
+
 /// Settings of a small picture with layers, for comparing scenes before and after a change.
 RenderSettings layered_settings();
 

@@ -279,19 +279,18 @@ const SceneView& scene_of(const PathJob& job, const LaneVertices& vertices) {
     return job.picture.scene_of(vertices.paths[0]->pixel);
 }
 
-/// Returns the lanes whose light is not in a transparent part of an emitter (is_hole).
+/// Returns the lanes whose light is not in a transparent part of an emitter.
 unsigned without_holes(const PathJob& job, unsigned lanes, const LaneVertices& vertices, const Lights& lights) {
     const SceneView& scene = scene_of(job, vertices);
     if (scene.any_alpha == 0) return lanes;
     for (unsigned rest = lanes & bit_mask(lights.is_triangle); rest != 0; rest &= rest - 1) {
         const auto lane = static_cast<uint32_t>(__builtin_ctz(rest));
-        const TriangleId target = lights.targets[lane];
-        if (scene.instances[target.instance].has_alpha == 0) continue;
         const PathState& path = *vertices.paths[lane];
         const uint32_t key = coin_key(sample_key<kBatched>(job, path.pixel, path.sample), path.depth, true);
-        const AcceptHit accept = {scene, {}, {}, key};
-        if (!accept.passes_alpha(target.instance, target.primitive, lights.weights.x[lane], lights.weights.y[lane]))
-            lanes &= ~(1u << lane);
+        LightSample light;
+        light.instance = lights.targets[lane].instance, light.primitive = lights.targets[lane].primitive;
+        light.b1 = lights.weights.x[lane], light.b2 = lights.weights.y[lane];
+        if (is_hole(scene, light, key)) lanes &= ~(1u << lane);
     }
     return lanes;
 }
