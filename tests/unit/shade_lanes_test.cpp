@@ -128,6 +128,20 @@ Scene mixed_scene(test::Random& random, const std::optional<Environment>& enviro
     return scene;
 }
 
+/// Adds to mixed_scene() panes between all that it has: clear, red and black.
+Scene scene_with_panes(test::Random& random, const std::optional<Environment>& environment) {
+    Scene scene = mixed_scene(random, environment);
+    const Rgb colors[] = {{1, 1, 1}, {0.9f, 0.2f, 0}, {0, 0, 0}};
+    for (int i = 0; i < 3; ++i) {
+        Material pane = test::white();
+        pane.kind = MaterialKind::MetallicRoughness, pane.metallic = 0, pane.roughness = 0;
+        pane.transmission_weight = 1, pane.thin_walled = true, pane.base_color = colors[i];
+        const auto x = static_cast<float>(i);
+        test::add(scene, test::sheet({x - 1, 0.5f * x, -x}, {1, 0, 1}, {0, 1, 0.25f * x}), pane);
+    }
+    return scene;
+}
+
 struct PreparedJob {
     Scene scene;
     Messages messages;
@@ -139,6 +153,7 @@ struct PreparedJob {
     explicit PreparedJob(Scene s)
         : scene(std::move(s)), prepared(prepare_scene(scene, {}, messages)), device(queue, prepared) {
         job.picture.scene = device.view();
+        job.passes_thin_walls = device.view().thin_walls.is_there();
     }
 };
 
@@ -150,7 +165,7 @@ void draw_vertex_of(test::Random& random, const SceneView& scene, LaneLobes lobe
         hit.primitive = random.below(kTriangles);
         hit.u = random.below(4) == 0 ? 0.5f * static_cast<float>(random.below(3)) : random.unit();
         hit.v = random.below(4) == 0 ? 0.0f : (1 - hit.u) * random.unit();
-    } while (lane_lobes(scene, {}, hit) != lobes);
+    } while (scene.instances[hit.instance].is_thin_wall != 0 || lane_lobes(scene, {}, hit) != lobes);
     const InstanceView& instance = scene.instances[hit.instance];
     const WorldTriangle triangle = world_triangle(instance, scene.meshes[instance.mesh], hit);
     const uint32_t way = random.below(6);
@@ -169,6 +184,7 @@ void draw_vertex_of(test::Random& random, const SceneView& scene, LaneLobes lobe
     path.radiance = {random.unit(), 0, random.unit()};
     const float densities[] = {0, 1e-30f, 1e30f, random.unit(), 4 * random.unit()}; // 0: camera, or delta lobe
     path.bsdf_pdf = densities[random.below(5)];
+    path.passed = random.below(3) == 0 ? random.unit() : 0.0f;
     path.pixel = random.below(1u << 20), path.sample = random.below(1u << random.below(20));
 }
 
@@ -181,6 +197,7 @@ bool is_same(TriangleId a, TriangleId b) { return a.instance == b.instance && a.
 /// Counts the events at vertices, because all kinds must occur.
 struct Counts {
     uint32_t went_on = 0, ended_early = 0, shadows = 0, to_triangles = 0, without_end = 0, emitted = 0;
+    uint32_t behind_panes = 0;
 };
 
 /// Shades `count` random vertices in lanes and one by one.
@@ -221,12 +238,15 @@ void check_vertices(const VertexShading& shading, LaneLobes lobes, const PathJob
             CHECK(is_same(paths[lane].direction, path.direction));
             CHECK(is_same(paths[lane].throughput, path.throughput));
             CHECK(is_same(paths[lane].bsdf_pdf, path.bsdf_pdf));
+            CHECK((!job.passes_thin_walls || is_same(paths[lane].passed, path.passed)));
             CHECK(is_same(paths[lane].start, path.start));
             CHECK(paths[lane].depth == path.depth);
             CHECK(paths[lane].rough_depth == path.rough_depth);
         }
         if (!has_shadow_ray) continue;
         ++counts.shadows;
+        const Ray ray = {expected.origin, 0, expected.direction, expected.t_max};
+        if (job.passes_thin_walls) counts.behind_panes += pass_thin_walls(job.picture.scene, ray).count != 0 ? 1 : 0;
         counts.to_triangles += expected.target.instance == kNoLight ? 0 : 1;
         counts.without_end += expected.t_max == kInfinity ? 1 : 0;
         CHECK(is_same(shadow->origin, expected.origin));
@@ -258,8 +278,10 @@ void check_all_vertices(const VertexShading& shading, LaneLobes lobes = LaneLobe
     for (const std::optional<Environment>& environment :
          {std::optional<Environment>{}, std::optional{Environment{{}, {0.3f, 0.4f, 0.6f}, 1.0f}},
           std::optional{Environment{{}, {0, 0, 0}, 0}}, std::optional{panorama}}) {
-        constexpr bool kIsMixed = kFeatures != kPlainDiffuse;
-        PreparedJob of(kIsMixed ? mixed_scene(random, environment) : scattered_scene(random, environment));
+        const auto make_scene = kFeatures == kPlainDiffuse  ? scattered_scene
+                                : (kFeatures & kMedia) != 0 ? scene_with_panes
+                                                            : mixed_scene;
+        PreparedJob of(make_scene(random, environment));
         CHECK(features_for(of.job) == kFeatures);
         for (const PathSettings& settings : settings_of_tests()) {
             of.job.settings = settings;
@@ -275,7 +297,10 @@ void check_all_vertices(const VertexShading& shading, LaneLobes lobes = LaneLobe
                                 counts.without_end, counts.emitted}) {
         CHECK(some > 200);
     }
+    CHECK((counts.behind_panes > 200) == ((kFeatures & kMedia) != 0));
 }
+
+constexpr Features kWithPanes = kAllMaterials | kMedia;
 
 } // namespace
 
@@ -283,6 +308,8 @@ TEST_CASE("shade lanes: eight vertices have the bits of single ones") {
     check_all_vertices<kPlainDiffuse>(kShadingOf8);
     check_all_vertices<kAllMaterials>(kShadingOf8);
     check_all_vertices<kAllMaterials>(kShadingOf8, LaneLobes::Glossy);
+    check_all_vertices<kWithPanes>(kShadingOf8);
+    check_all_vertices<kWithPanes>(kShadingOf8, LaneLobes::Glossy);
 }
 
 #if defined(PERTEV_HAS_16_LANES)
@@ -291,6 +318,8 @@ TEST_CASE("shade lanes: sixteen vertices have the bits of single ones") {
     check_all_vertices<kPlainDiffuse>(kShadingOf16);
     check_all_vertices<kAllMaterials>(kShadingOf16);
     check_all_vertices<kAllMaterials>(kShadingOf16, LaneLobes::Glossy);
+    check_all_vertices<kWithPanes>(kShadingOf16);
+    check_all_vertices<kWithPanes>(kShadingOf16, LaneLobes::Glossy);
 }
 #endif
 

@@ -28,7 +28,8 @@ const VertexShading& vertex_shading() {
 bool can_shade_lanes(const PathJob& job) {
     constexpr Features kAllowed = kAllMaterials | kBatched | kNested | kLightTree;
     static const bool takes_lanes = shades_in_lanes();
-    return takes_lanes && (features_for(job) & ~kAllowed) == 0 &&
+    const bool is_vacuum = job.picture.scene.has_media == 0; // code for media serves thin walls, too
+    return takes_lanes && (features_for(job) & ~(kAllowed | (is_vacuum ? Features{kMedia} : 0))) == 0 &&
            job.picture.scene.absorption != SolidAbsorption::OfEmitters && job.settings.light == PathLight::Path &&
            job.settings.strategy != LightStrategy::BsdfOnly;
 }

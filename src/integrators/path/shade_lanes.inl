@@ -295,6 +295,27 @@ unsigned without_holes(const PathJob& job, unsigned lanes, const LaneVertices& v
     return lanes;
 }
 
+/// Lets the light of `lanes` through the thin walls on their shadow rays, of which `rays` has origin, direction and
+/// t_max, as sample_direct does. `behind` gets the lanes with walls. Returns the lanes whose light still arrives. It is
+/// called, because few scenes need its code, and it is long.
+[[gnu::noinline]] unsigned pass_thin_walls(const PathJob& job, unsigned lanes, const LaneVertices& vertices,
+                         const float (&rays)[kLanes][8], Rgbs& arriving, unsigned& behind) {
+    Table<3> table;
+    arriving.r.store(table.at[0]), arriving.g.store(table.at[1]), arriving.b.store(table.at[2]);
+    for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
+        const auto lane = static_cast<uint32_t>(__builtin_ctz(rest));
+        const float* const row = rays[lane];
+        const Ray ray = {{row[0], row[1], row[2]}, 0.0f, {row[3], row[4], row[5]}, row[6]};
+        const PassedWalls walls = pass_thin_walls(scene_of(job, vertices), ray);
+        const uint32_t scatterings = vertices.paths[lane]->depth + 1 + walls.count;
+        if (is_black(walls.transmittance) || scatterings > job.settings.max_depth) lanes &= ~(1u << lane);
+        if (walls.count != 0) behind |= 1u << lane;
+        table.set(0, lane, walls.transmittance * Rgb{table.at[0][lane], table.at[1][lane], table.at[2][lane]});
+    }
+    arriving = table.rgb(0);
+    return lanes;
+}
+
 /// Samples direct light as sample_direct. Returns the lanes that need a shadow ray.
 template <class Lobes>
 unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, const Surfaces& surfaces,
@@ -310,16 +331,8 @@ unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, c
     }
     const Values scattered = evaluate(surfaces, lobes, wo, wo_local, lights.wi);
     const Mask wants = lights.arrives && scattered.pdf > 0 && !is_black(scattered.f);
-    const unsigned wanted = without_holes(job, bit_mask(wants) & lanes, vertices, lights);
+    unsigned wanted = without_holes(job, bit_mask(wants) & lanes, vertices, lights);
     if (wanted == 0) return 0;
-    const bool by_mis = job.settings.strategy == LightStrategy::Mis;
-    const Floats weight =
-        by_mis ? select(lights.is_delta, Floats(1.0f), power_heuristic(lights.pdf, scattered.pdf)) : Floats(1.0f);
-    Rgbs contribution = paths.throughput * scattered.f * ((weight / lights.pdf) * lights.radiance);
-    if (job.settings.clamp > 0) {
-        const Floats largest = max_component(contribution), limit = weight * job.settings.clamp;
-        contribution = select(paths.is_clamped && largest > limit, (limit / largest) * contribution, contribution);
-    }
     // ray_to_light.
     const Vec3s origin = surfaces.origin_towards(lights.wi);
     const Vec3s end = select(
@@ -329,6 +342,18 @@ unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, c
     const Floats t_max = select(lights.has_distance, Floats(1.0f), Floats(kInfinity));
     alignas(64) float first[kLanes][8], light[3][kLanes];
     store_columns({origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, t_max, t_max}, rows_of(first));
+    const bool by_mis = job.settings.strategy == LightStrategy::Mis;
+    const Floats weight =
+        by_mis ? select(lights.is_delta, Floats(1.0f), power_heuristic(lights.pdf, scattered.pdf)) : Floats(1.0f);
+    Rgbs arriving = (weight / lights.pdf) * lights.radiance;
+    unsigned behind = 0;
+    if (job.passes_thin_walls) wanted = pass_thin_walls(job, wanted, vertices, first, arriving, behind);
+    Rgbs contribution = paths.throughput * scattered.f * arriving;
+    if (job.settings.clamp > 0) {
+        const Floats largest = max_component(contribution), limit = weight * job.settings.clamp;
+        const Mask is_clamped = paths.is_clamped || Mask::of_bits(behind);
+        contribution = select(is_clamped && largest > limit, (limit / largest) * contribution, contribution);
+    }
     contribution.r.store(light[0]), contribution.g.store(light[1]), contribution.b.store(light[2]);
     for (unsigned rest = wanted; rest != 0; rest &= rest - 1) {
         const int lane = __builtin_ctz(rest);
@@ -393,6 +418,7 @@ unsigned sample_scattering(const PathJob& job, unsigned lanes, const Paths& path
         path.direction = {row[3], row[4], row[5]};
         path.throughput = {row[6], row[7], throughput.b[lane]};
         path.bsdf_pdf = pdf[lane];
+        path.passed = 0;
         path.start = {vertices.hits[lane]->instance, vertices.hits[lane]->primitive};
         if (job.selects_by_tree) path.normal = {normal.x[lane], normal.y[lane], normal.z[lane]};
         path.depth += 1;
@@ -422,6 +448,8 @@ void add_emission(const PathJob& job, unsigned lanes, const LaneVertices& vertic
         Listeners<> listener(job);
         if (job.selects_by_tree) {
             add_surface_emission<kLightTree>(job, path, hit, surface, listener);
+        } else if (job.passes_thin_walls) {
+            add_surface_emission<kMedia>(job, path, hit, surface, listener);
         } else {
             add_surface_emission<kPlainDiffuse>(job, path, hit, surface, listener);
         }
