@@ -356,7 +356,7 @@ MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + lobe_mutatio
     ("lanes without the correction of the shadow terminator", "consistency/one_picture unit/shade_lanes",
      ("src/integrators/path/shade_lanes.inl", "lower_direction(wi_local, s.tilt);", "lower_direction(wi_local, 0.0f * s.tilt);")),
     ("lanes clamp light that was scattered once", "unit/shade_lanes",
-     ("src/integrators/path/shade_lanes.inl", "paths.is_clamped && largest > limit", "largest > limit")),
+     ("src/integrators/path/shade_lanes.inl", "is_clamped && largest > limit", "largest > limit")),
     ("lanes go on from black surfaces", "unit/shade_lanes",
      ("src/integrators/path/shade_lanes.inl", " && !is_black(weight);", ";")),
     ("lanes end shadow rays on the light's plane", "unit/shade_lanes",

@@ -1,5 +1,6 @@
 // Light selection of shade_lanes.inl, in whose anonymous namespaces it is: lights for eight or sixteen receivers at
-// once, with the bits that sample_light gives for each (shading/light_set.h, shading/chosen_by_tree.h).
+// once, with the bits that sample_light gives for each (shading/light_set.h, shading/chosen_by_tree.h), and what holes
+// of emitters and thin walls leave of their light.
 
 namespace pertev {
 namespace {
@@ -317,6 +318,48 @@ void sample_lights(const LightSetView& view, unsigned lanes, Vec3s position, Vec
     lights.wi = select(is_triangle, wi, lights.wi);
     lights.normal = select(is_triangle, normalize(normal), lights.normal);
     lights.pdf = select(is_triangle, pdf, lights.pdf);
+}
+
+/// Returns the scene of all lanes, whose paths are of one.
+const SceneView& scene_of(const PathJob& job, const LaneVertices& vertices) {
+    return job.picture.scene_of(vertices.paths[0]->pixel);
+}
+
+/// Returns the lanes whose light is not in a transparent part of an emitter.
+unsigned without_holes(const PathJob& job, unsigned lanes, const LaneVertices& vertices, const Lights& lights) {
+    const SceneView& scene = scene_of(job, vertices);
+    if (scene.any_alpha == 0) return lanes;
+    for (unsigned rest = lanes & bit_mask(lights.is_triangle); rest != 0; rest &= rest - 1) {
+        const auto lane = static_cast<uint32_t>(__builtin_ctz(rest));
+        const PathState& path = *vertices.paths[lane];
+        const uint32_t key = coin_key(sample_key<kBatched>(job, path.pixel, path.sample), path.depth, true);
+        LightSample light;
+        light.instance = lights.targets[lane].instance, light.primitive = lights.targets[lane].primitive;
+        light.b1 = lights.weights.x[lane], light.b2 = lights.weights.y[lane];
+        if (is_hole(scene, light, key)) lanes &= ~(1u << lane);
+    }
+    return lanes;
+}
+
+/// Lets the light of `lanes` through the thin walls on their shadow rays, of which `rays` has origin, direction and
+/// t_max, as sample_direct does. `behind` gets the lanes with walls. Returns the lanes whose light still arrives. It is
+/// called, because few scenes need its code, and it is long.
+[[gnu::noinline]] unsigned pass_thin_walls(const PathJob& job, unsigned lanes, const LaneVertices& vertices,
+                                           const float (&rays)[kLanes][8], Rgbs& arriving, unsigned& behind) {
+    Table<3> table;
+    arriving.r.store(table.at[0]), arriving.g.store(table.at[1]), arriving.b.store(table.at[2]);
+    for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
+        const auto lane = static_cast<uint32_t>(__builtin_ctz(rest));
+        const float* const row = rays[lane];
+        const Ray ray = {{row[0], row[1], row[2]}, 0.0f, {row[3], row[4], row[5]}, row[6]};
+        const PassedWalls walls = pass_thin_walls(scene_of(job, vertices), ray);
+        const uint32_t scatterings = vertices.paths[lane]->depth + 1 + walls.count;
+        if (is_black(walls.transmittance) || scatterings > job.settings.max_depth) lanes &= ~(1u << lane);
+        if (walls.count != 0) behind |= 1u << lane;
+        table.set(0, lane, walls.transmittance * Rgb{table.at[0][lane], table.at[1][lane], table.at[2][lane]});
+    }
+    arriving = table.rgb(0);
+    return lanes;
 }
 
 } // namespace
