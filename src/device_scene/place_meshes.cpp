@@ -1,5 +1,7 @@
 #include "device_scene/place_meshes.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/error.h"
@@ -34,6 +36,26 @@ Error too_many_copies(const MeshPlacement& placement, std::size_t i, const Insta
                         placement.copied_triangles, limit)};
 }
 
+/// Selects the shared meshes that are baked all the same: those with the fewest triangles in all their instances, as
+/// many as kMaxSmallCopies allows.
+std::vector<bool> small_meshes(const Scene& scene, const std::vector<uint32_t>& uses) {
+    std::vector<bool> is_small(uses.size());
+    if (!scene.bakes_small_meshes) return is_small;
+    const auto copied_triangles = [&](uint32_t mesh) { return uses[mesh] * scene.meshes[mesh].triangle_count(); };
+    std::vector<uint32_t> order;
+    for (uint32_t mesh = 0; mesh < uses.size(); ++mesh) {
+        if (uses[mesh] > 1) order.push_back(mesh);
+    }
+    std::ranges::stable_sort(order, {}, copied_triangles);
+    uint64_t sum = 0;
+    for (const uint32_t mesh : order) {
+        sum += copied_triangles(mesh);
+        if (sum > kMaxSmallCopies) break;
+        is_small[mesh] = true;
+    }
+    return is_small;
+}
+
 } // namespace
 
 Vec3 world_centre(const Scene& scene) {
@@ -49,15 +71,15 @@ MeshPlacement place_meshes(const Scene& scene, Vec3 centre, const std::vector<bo
     uint64_t own_triangles = 0;
     for (const Mesh& mesh : scene.meshes) own_triangles += mesh.triangle_count();
     const uint64_t limit = kFreeBakedTriangles + kMaxBakedExpansion * own_triangles;
-    const std::vector<bool> moves = may_move(scene);
+    const std::vector<bool> moves = may_move(scene), is_small = small_meshes(scene, uses);
     placement.blas_of_mesh.assign(scene.meshes.size(), kBakedMesh);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const bool may_be_moved = moves[i] || (i < apart.size() && apart[i]);
-        const bool stays_alone = uses[instance.mesh] == 1 && !may_be_moved;
-        const bool baked = !instance.is_hidden && (stays_alone || is_skewed(instance.world_from_local));
+        const bool may_be_baked = (uses[instance.mesh] == 1 || is_small[instance.mesh]) && !may_be_moved;
+        const bool baked = !instance.is_hidden && (may_be_baked || is_skewed(instance.world_from_local));
         placement.is_baked.push_back(baked);
-        if (baked && uses[instance.mesh] > 1) {
+        if (baked && !may_be_baked && uses[instance.mesh] > 1) {
             ++placement.copies;
             placement.copied_triangles += scene.meshes[instance.mesh].triangle_count();
             if (placement.copied_triangles > limit) throw too_many_copies(placement, i, instance, limit);

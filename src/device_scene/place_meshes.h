@@ -16,12 +16,13 @@
 namespace pertev {
 
 inline constexpr uint32_t kBakedMesh = 0xffffffffu;
+inline constexpr uint64_t kMaxSmallCopies = 1u << 18; // triangles in all instances of shared meshes that are small
 
 struct MeshPlacement {
     std::vector<bool> is_baked;         // [instance]
     std::vector<uint32_t> blas_of_mesh; // index of the mesh's BLAS, or kBakedMesh if no instance needs one
     uint32_t mesh_tree_count = 0;
-    uint64_t copies = 0, copied_triangles = 0; // baked although their mesh is used more than once
+    uint64_t copies = 0, copied_triangles = 0; // baked because of their transforms although their mesh is shared
     Vec3 centre;                               // origin of the world in which they are placed, in the scene's
                                                // coordinates
 };
@@ -30,12 +31,13 @@ struct MeshPlacement {
 /// instances (scene/scene_origin.h). It is 0 if a reader has already moved the scene of a file.
 Vec3 world_centre(const Scene& scene);
 
-/// Places the meshes. An instance is baked if its mesh is used once and it may not move (scene/animation.h, `apart`),
-/// or, moving or not, if its transform's condition number is over 2^12, because such a skewed local space would enlarge
-/// the boxes of a TLAS more than the triangles cost memory. Hidden instances are not baked. Throws
-/// Error(OverLimit) that names the instance with which such copies exceed a multiple of the scene's own triangles.
-/// `centre` is the origin of the world in which they are placed, and `apart` says of each instance whether a caller may
-/// move it; empty: of none.
+/// Places the meshes. An instance that may not move (scene/animation.h, `apart`) is baked if its mesh is used once, or
+/// is small in all its instances together (kMaxSmallCopies) and the scene lets it be: a ray takes longer to enter a
+/// mesh's own space than to go on in a somewhat larger tree. Moving or not, it is baked if its transform's condition
+/// number is over 2^12, because such a skewed local space would enlarge the boxes of a TLAS more than the triangles
+/// cost memory. Hidden instances are not baked. Throws Error(OverLimit) that names the instance with which such copies
+/// exceed a multiple of the scene's own triangles. `centre` is the origin of the world in which they are placed, and
+/// `apart` says of each instance whether a caller may move it; empty: of none.
 MeshPlacement place_meshes(const Scene& scene, Vec3 centre = {0, 0, 0}, const std::vector<bool>& apart = {});
 
 // Triangles for builders, which `sink` may end.

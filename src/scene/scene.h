@@ -75,6 +75,7 @@ struct Scene {
     std::vector<SuggestedSetting> suggested;  // suggestions of the file: samples, an integrator and its settings, a
                                               // film
     std::vector<std::filesystem::path> files; // files that its own file refers to, in the order of reading
+    bool bakes_small_meshes = true;           // false: keeps each shared mesh as one (device_scene/place_meshes.h)
     std::string no_instances;                 // if there are no instances: what the file has instead, and what would
                                               // be right
 };

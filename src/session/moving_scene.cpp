@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-
+#include "base/message_text.h"
 #include "device_scene/place_meshes.h"
 #include "device_scene/scene_on_device.h"
 
@@ -132,9 +132,24 @@ uint32_t MovingScene::edit(const std::function<SceneUpdate(Scene&)>& edit, Sink&
         prepares_anew = prepares_anew || !(centre == *options_.centre);
         options_.centre = centre;
     }
+    count_baked_moves(update, sink);
     const uint32_t parts = apply(std::move(update), prepares_anew, sink);
     prepared_.poses = time_s_ ? posed_.poses() : prepared_.poses;
     return parts;
+}
+
+void MovingScene::count_baked_moves(const SceneUpdate& update, Sink& sink) {
+    constexpr int kOften = 3;
+    constexpr uint64_t kLargeTree = 20'000; // triangles; refitting fewer takes a few milliseconds at most
+    const std::vector<bool>& is_baked = prepared_.is_baked;
+    const auto moved = std::ranges::find_if(update.moved_instances, [&](uint32_t i) { return is_baked[i]; });
+    if (moved == update.moved_instances.end() || ++baked_moves_ != kOften) return;
+    const uint64_t triangles = prepared_.trees.triangles.front();
+    if (triangles < kLargeTree) return;
+    sink.warn(
+        fmt::format("{} is in a tree of {} triangles, which each move refits; name it in `movable`, and it has one "
+                    "of its own",
+                    numbered("instance", *moved, scene().instances[*moved].name), triangles));
 }
 
 /// Brings prepared() up to date after `update`. Returns the parts that have changed.

@@ -39,7 +39,8 @@ public:
 
     /// Changes the scene as PosedScene::edit and keeps its time. Returns parts as set_time. A scene that is not
     /// animated is placed in the world as a fresh one with these values would be; made-up lights and the ground stay.
-    /// Throws as set_time and `edit`.
+    /// A third move of instances in a large tree with others causes a warning that they can have their own. Throws as
+    /// set_time and `edit`.
     uint32_t edit(const std::function<SceneUpdate(Scene&)>& edit, Sink& sink);
 
     /// The cameras of the scene at a time, without moving the scene there.
@@ -48,11 +49,13 @@ public:
 private:
     std::shared_ptr<const MotionKeys> motions_at(double time_s);
     uint32_t apply(SceneUpdate update, bool prepares_anew, Sink& sink);
+    void count_baked_moves(const SceneUpdate& update, Sink& sink);
 
     PosedScene posed_;
     std::optional<Shutter> shutter_;
     std::optional<double> time_s_;
     PreparedScene prepared_;
+    int baked_moves_ = 0;    // edits that moved instances without trees of their own
     bool is_behind_ = false; // an update threw, so prepared_ is outdated
     PrepareOptions options_;
 };

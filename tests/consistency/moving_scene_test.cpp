@@ -11,6 +11,7 @@
 #include "session/opening/choose_camera.h"
 #include "session/session.h"
 #include "session/survey/default_light.h"
+#include "tests/support/meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
@@ -217,6 +218,38 @@ TEST_CASE("the world's centre follows an instance that is moved") {
     edit(rest);
     CHECK(moving.prepared().centre == MovingScene(rest, std::nullopt, {}, messages).prepared().centre);
     CHECK(!(moving.prepared().centre == before));
+}
+
+TEST_CASE("the third move of an instance in a large tree causes one warning") {
+    Scene scene;
+    const auto sphere = [](int subdivisions) {
+        Mesh mesh;
+        const test::TriangleMesh triangles = test::make_sphere(subdivisions, {0, 0, 0}, 1);
+        mesh.positions = triangles.positions, mesh.indices = triangles.indices;
+        return mesh;
+    };
+    scene.meshes = {sphere(5), sphere(1)};
+    scene.materials.emplace_back();
+    scene.instances = {{"large", 0, 0, {}}, {"small", 1, 0, {}}};
+    const auto move = [](Scene& edited) -> SceneUpdate {
+        edited.instances[1].world_from_local.translation.x += 0.1f;
+        SceneUpdate update;
+        update.moved_instances = {1};
+        return update;
+    };
+    const auto told_in = [&](int moves, PrepareOptions options) {
+        Messages messages;
+        MovingScene moving(scene, std::nullopt, std::move(options), messages);
+        for (int i = 0; i < moves; ++i) moving.edit(move, messages);
+        return messages.all().size();
+    };
+    CHECK(told_in(2, {}) == 0);
+    CHECK(told_in(5, {}) == 1);
+    PrepareOptions apart;
+    apart.apart = {false, true};
+    CHECK(told_in(5, apart) == 0);
+    scene.meshes[0] = sphere(3);
+    CHECK(told_in(5, {}) == 0);
 }
 
 TEST_CASE("a step after a failed one is complete") {

@@ -11,19 +11,26 @@ from cli_run import SANITIZED, limit_addresses, main, write
 
 
 def gltf_of_nested_boxes():
-    """The box as one mesh in two nodes. One node is three times as large as the other."""
+    """The box as one mesh in two nodes, of which one is three times as large as the other. An animation that moves neither keeps
+    both from being baked."""
     indices = [side[k] for side in SIDES for k in (0, 1, 2, 0, 2, 3)]
     data = b"".join(struct.pack("<3f", *corner) for corner in CORNERS) + struct.pack(f"<{len(indices)}H", *indices)
-    positions = 12 * len(CORNERS)
+    data += struct.pack("<4f", 0, 0, 0, 0)
+    positions, times = 12 * len(CORNERS), len(data) - 16
     return json.dumps({
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
         "nodes": [{"mesh": 0, "name": "inner"}, {"mesh": 0, "name": "outer", "scale": [3, 3, 3]}],
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
         "accessors": [{"bufferView": 0, "componentType": 5126, "count": len(CORNERS), "type": "VEC3",
                        "min": [-1, -1, -1], "max": [1, 1, 1]},
-                      {"bufferView": 1, "componentType": 5123, "count": len(indices), "type": "SCALAR"}],
+                      {"bufferView": 1, "componentType": 5123, "count": len(indices), "type": "SCALAR"},
+                      {"bufferView": 2, "componentType": 5126, "count": 1, "type": "SCALAR", "min": [0], "max": [0]},
+                      {"bufferView": 2, "byteOffset": 4, "componentType": 5126, "count": 1, "type": "VEC3"}],
+        "animations": [{"channels": [{"sampler": 0, "target": {"node": node, "path": "translation"}} for node in (0, 1)],
+                        "samplers": [{"input": 2, "output": 3}]}],
         "bufferViews": [{"buffer": 0, "byteLength": positions},
-                        {"buffer": 0, "byteOffset": positions, "byteLength": len(data) - positions}],
+                        {"buffer": 0, "byteOffset": positions, "byteLength": times - positions},
+                        {"buffer": 0, "byteOffset": times, "byteLength": 16}],
         "buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64,"
                      + base64.b64encode(data).decode()}]})
 

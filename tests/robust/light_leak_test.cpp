@@ -78,6 +78,7 @@ Transform transform_of(const Placement& place) {
 
 Scene scene_of(const Shape& shape, const Placement& place) {
     Scene scene;
+    scene.bakes_small_meshes = false;
     scene.materials.push_back({{.base_color = grey(0.8f)}, "grey"});
     const Transform m = transform_of(place);
     const bool is_node = place.placing == Placing::Node || place.placing == Placing::Instances;

@@ -115,6 +115,7 @@ struct ClosedInstance {
 
 Scene scene_of(const TriangleMesh& triangles, std::initializer_list<Transform> places) {
     Scene scene;
+    scene.bakes_small_meshes = false;
     Mesh mesh;
     mesh.positions = triangles.positions;
     mesh.indices = triangles.indices;

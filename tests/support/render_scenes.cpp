@@ -77,6 +77,7 @@ void stand(Scene& scene, uint32_t mesh, uint32_t material, Vec3 at, float size) 
 
 Scene make_mixed_scene() {
     Scene scene;
+    scene.bakes_small_meshes = false; // so that there are instances
     scene.images.push_back(checker_image());
     for (int i = 0; i < 3; ++i) scene.meshes.push_back(i == 0 ? sphere_mesh(3) : square_mesh());
     scene.meshes.push_back(sphere_mesh(2)); // used once and thus baked, unlike the two squares

@@ -19,6 +19,7 @@ namespace {
 /// transforms too skewed for a tree.
 Scene scene_of(uint32_t triangles, uint32_t squeezed) {
     Scene scene;
+    scene.bakes_small_meshes = false;
     Mesh& mesh = scene.meshes.emplace_back();
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     for (uint32_t i = 0; i < 3 * triangles; ++i) mesh.indices.push_back(i % 3);
@@ -41,6 +42,33 @@ TEST_CASE("an instance is baked if it alone uses its mesh or if its space is ske
     CHECK(placement.mesh_tree_count == 1);
     CHECK(placement.copies == 2);
     CHECK(placement.copied_triangles == 10);
+}
+
+TEST_CASE("shared meshes are baked as long as the smallest of them have few triangles in all instances") {
+    const auto scene_with = [](const std::vector<uint32_t>& triangles, uint32_t uses) {
+        Scene scene;
+        scene.materials.emplace_back();
+        for (uint32_t mesh = 0; mesh < triangles.size(); ++mesh) {
+            scene.meshes.push_back(scene_of(triangles[mesh], 0).meshes.front());
+            for (uint32_t i = 0; i < uses; ++i) scene.instances.push_back({"", mesh, 0, {}});
+        }
+        return scene;
+    };
+    constexpr uint32_t most = kMaxSmallCopies;
+    using Baked = std::vector<bool>;
+    CHECK(place_meshes(scene_with({most / 2}, 2)).is_baked == Baked{true, true});
+    CHECK(place_meshes(scene_with({most / 2}, 2)).copies == 0);
+    CHECK(place_meshes(scene_with({most / 2 + 1}, 2)).is_baked == Baked{false, false});
+    const Baked second = {false, false, true, true, false, false}; // the third alone would be small, too
+    const Scene three = scene_with({most / 2, 2, most / 2 - 1}, 2);
+    CHECK(place_meshes(three).is_baked == second);
+    CHECK(place_meshes(three).mesh_tree_count == 2);
+    Scene two = scene_with({2, 12}, 2);
+    CHECK(place_meshes(two, {}, {true, false, false, false}).is_baked == Baked{false, true, true, true});
+    two.instances[2].is_hidden = true;
+    CHECK(place_meshes(two).is_baked == Baked{true, true, false, true});
+    two.bakes_small_meshes = false;
+    CHECK(place_meshes(two).is_baked == Baked(4, false));
 }
 
 TEST_CASE("baked copies that far exceed the scene's size are refused with the instance's name") {

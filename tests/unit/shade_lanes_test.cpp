@@ -39,6 +39,7 @@ Mesh scattered_triangles(test::Random& random, bool has_normals) {
 /// and two-sided emitters.
 Scene scattered_scene(test::Random& random, const std::optional<Environment>& environment) {
     Scene scene;
+    scene.bakes_small_meshes = false; // so that there are instances
     scene.materials = {test::white(1), test::white(0), test::white(0.4f), test::white(0.3f), test::white(0)};
     scene.materials[3].emission = {3, 0, 1}, scene.materials[4].emission = {0.5f, 2, 0};
     scene.materials[4].two_sided_emission = true;
