@@ -216,8 +216,7 @@ pertev_launches(integrators/cast/shade_cast.cu
 # For lights that are selected by a tree.
 pertev_launches(integrators/distributed/shade_distributed_by_tree.cu
   integrators/distributed/distributed.h integrators/ray_tree/tree_stages.h
-  STAGES "ShadeTrees<Distributed, ShadingVariant::General, ChosenByTree>"
-    "ShadeTrees<Distributed, ShadingVariant::Unstacked, ChosenByTree>")
+  STAGES "ShadeTrees<Distributed, ShadingVariant::General, ChosenByTree>")
 pertev_launches(integrators/distributed/shade_distributed.cu
   integrators/distributed/distributed.h integrators/ray_tree/tree_stages.h
   STAGES "ShadeTrees<Distributed, ShadingVariant::General>"
@@ -259,8 +258,7 @@ pertev_launches(integrators/light/shade_seen.cu
     "ShadeSeen<ShadingVariant::Unstacked>")
 pertev_launches(integrators/path/meter_light.cu
   integrators/path/meter_light.h
-  STAGES "DrawMeterLights<false>"
-    "DrawMeterLights<true>"
+  STAGES DrawMeterLights
     AddMeterLights)
 # Stages that compile quickly; shading has files of its own.
 pertev_launches(integrators/path/path_stages.cu

@@ -23,13 +23,7 @@ uint64_t add_meter_lights(Queue& queue, SceneTracer& tracer, const PictureView& 
     for (uint32_t done = 0; done < count;) {
         const uint32_t now = std::min(samples_at_once, count - done);
         const BeginOrder samples_now = {film.window, first + done, now};
-        if (picture.scene.has_media != 0 || has_walls) {
-            launch(queue, "draw_meter_lights", pixels * now,
-                   DrawMeterLights<true>{picture, settings, samples_now, view});
-        } else {
-            launch(queue, "draw_meter_lights", pixels * now,
-                   DrawMeterLights<false>{picture, settings, samples_now, view});
-        }
+        launch(queue, "draw_meter_lights", pixels * now, DrawMeterLights{picture, settings, samples_now, view});
         tracer.find_occlusions(view.query(has_walls), pixels * now, {nullptr, keys.data()});
         launch(queue, "add_meter_lights", pixels * now, AddMeterLights{view, film});
         done += now;

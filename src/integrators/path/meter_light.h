@@ -32,9 +32,8 @@ struct MeterQueueView {
     }
 };
 
-/// Light that reaches the meter from one point of one light without occlusion; black if there is none. Code with
-/// kDimsLight follows it through media and thin walls.
-template <bool kDimsLight = false>
+/// Light that reaches the meter from one point of one light without occlusion, through media and thin walls; black if
+/// there is none.
 HD inline ShadowRay draw_meter_light(const PictureView& picture, const PathSettings& settings, uint32_t pixel,
                                      uint32_t sample) {
     const SceneView& scene = picture.scene;
@@ -59,20 +58,17 @@ HD inline ShadowRay draw_meter_light(const PictureView& picture, const PathSetti
     shadow.target = {light.instance, light.primitive};
     shadow.contribution = (pdf * (weight / light.pdf)) * light.radiance; // for albedo 1 the BSDF's value equals its
                                                                          // density
-    if constexpr (kDimsLight) {
-        if (scene.thin_walls.is_there()) {
-            const PassedWalls walls = pass_thin_walls(scene, ray);
-            const bool is_too_deep = walls.count > settings.max_depth;
-            shadow.contribution = is_too_deep ? Rgb{0, 0, 0} : walls.transmittance * shadow.contribution;
-        }
-        if (scene.has_media != 0) {
-            shadow.contribution = transmittance_of_media(scene, picture.camera.interior, ray) * shadow.contribution;
-        }
+    if (scene.thin_walls.is_there()) {
+        const PassedWalls walls = pass_thin_walls(scene, ray);
+        const bool is_too_deep = walls.count > settings.max_depth;
+        shadow.contribution = is_too_deep ? Rgb{0, 0, 0} : walls.transmittance * shadow.contribution;
+    }
+    if (scene.has_media != 0) {
+        shadow.contribution = transmittance_of_media(scene, picture.camera.interior, ray) * shadow.contribution;
     }
     return shadow;
 }
 
-template <bool kDimsLight>
 struct DrawMeterLights {
     PictureView picture;
     PathSettings settings;
@@ -81,7 +77,7 @@ struct DrawMeterLights {
 
     HD void operator()(uint32_t i) const {
         const auto [pixel, sample] = samples.at(i);
-        const ShadowRay shadow = draw_meter_light<kDimsLight>(picture, settings, pixel, sample);
+        const ShadowRay shadow = draw_meter_light(picture, settings, pixel, sample);
         store_ray(queue.rays + i, {shadow.origin, 0.0f, shadow.direction, shadow.t_max});
         queue.targets[i] = {shadow.target.instance, shadow.target.primitive};
         queue.keys[i] = coin_key({pixel, sample, settings.seed}, 0, true);

@@ -53,24 +53,24 @@ void run_photons(Schedule& schedule, const PhotonJob& job) {
 
 template <ShadingVariant kVariant, class Schedule>
 void estimate_radiance(Schedule& schedule, const PhotonJob& job, WorkCount lookups) {
-    const auto by = [&]<PhotonSearch kSearch>() {
-        const EstimateRadiance<kVariant, kSearch> estimate = {job.scene, job.subpaths, job.gather, job.maps, job.film};
+    const auto by = [&]<ShadingVariant kOf, PhotonSearch kSearch>() {
+        const EstimateRadiance<kOf, kSearch> estimate = {job.scene, job.subpaths, job.gather, job.maps, job.film};
         schedule.run("estimate_radiance", lookups, estimate);
         if constexpr (kSearch == PhotonSearch::Grid) {
             if (job.gather.crowded == nullptr) return;
             const uint32_t sharing = min(lookups.most, kMaxSharing / kShares) * kShares;
-            schedule.run("share_lookups", sharing, ShareLookups<kVariant>{estimate, sharing});
+            schedule.run("share_lookups", sharing, ShareLookups<kOf>{estimate, sharing});
             schedule.run("add_shared_lookups", {lookups.most, &job.subpaths.counts->crowded},
-                         AddSharedLookups<kVariant>{estimate});
+                         AddSharedLookups<kOf>{estimate});
         }
     };
     switch (job.search) {
     case PhotonSearch::Grid:
-        return by.template operator()<PhotonSearch::Grid>();
-    case PhotonSearch::KdTree:
-        return by.template operator()<PhotonSearch::KdTree>();
+        return by.template operator()<kVariant, PhotonSearch::Grid>();
+    case PhotonSearch::KdTree: // trees are for comparison, and have code for all materials alone
+        return by.template operator()<ShadingVariant::General, PhotonSearch::KdTree>();
     case PhotonSearch::Octree:
-        return by.template operator()<PhotonSearch::Octree>();
+        return by.template operator()<ShadingVariant::General, PhotonSearch::Octree>();
     }
 }
 

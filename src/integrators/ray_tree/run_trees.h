@@ -96,21 +96,20 @@ bool uses_light_tree(const RayTreeSettings& settings, uint32_t lights, bool has_
     return Algorithm::kSelectsLights && uses_light_tree(settings.light_choice, lights, has_times);
 }
 
-/// Runs ShadeTrees with the least code that the materials need. One kernel serves open and closed shutters, because a
-/// kernel is a megabyte of machine code.
+/// Runs ShadeTrees with the least code that the materials need. One kernel serves open and closed shutters, and one all
+/// materials where a tree selects lights, because a kernel is a megabyte of machine code.
 template <class Algorithm, class Schedule>
 void shade_trees(Schedule& schedule, const TreeJob& job, WorkCount rays, uint32_t round, uint32_t first, bool is_last) {
-    const auto shade_by = [&]<class Choice>() {
-        with_stacks(job.picture.scene.variant, [&]<ShadingVariant kVariant>() {
-            schedule.run("shade_trees", rays,
-                         ShadeTrees<Algorithm, kVariant, Choice>{job.picture, job.settings, job.film, job.trees, round,
-                                                                 first, is_last});
-        });
+    const auto shade = [&]<ShadingVariant kVariant, class Choice>() {
+        schedule.run("shade_trees", rays,
+                     ShadeTrees<Algorithm, kVariant, Choice>{job.picture, job.settings, job.film, job.trees, round,
+                                                             first, is_last});
     };
     if constexpr (Algorithm::kSelectsLights) {
-        if (job.trees.normals != nullptr) return shade_by.template operator()<ChosenByTree>();
+        if (job.trees.normals != nullptr) return shade.template operator()<ShadingVariant::General, ChosenByTree>();
     }
-    shade_by.template operator()<ChosenByPower>();
+    with_stacks(job.picture.scene.variant,
+                [&]<ShadingVariant kVariant>() { shade.template operator()<kVariant, ChosenByPower>(); });
 }
 
 /// Renders samples [job.first, job.first + job.count) and adds them to the film.
