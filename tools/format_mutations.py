@@ -230,4 +230,7 @@ MUTATIONS = [
     ("materials with other lobes share a shading group", "unit/shading_groups", ("src/shading/shading_groups.cpp", "    add(m.has_coat());\n", "")),
     ("nodes that an animation hides stay", "unit/read_gltf_animations", ("src/scene/pose/posed_scene.cpp", "!is_shown_[instance.node] || is_singular(world)", "is_singular(world)")),
     ("a light of a hidden node shines at rest", "unit/read_gltf_animations unit/read_gltf_nodes", ("src/formats/gltf/read_gltf.cpp", "light.is_hidden = !are_visible[light.node];", "light.is_hidden = false;")),
+    ("coordinates of a mapping run once around at the seam", "unit/project_textures", ("src/formats/described/project_textures.cpp", "if (greatest - least > 0.5 && own", "if (greatest - least > 5 && own")),
+    ("coordinates of a mapping are those of a shape's first place", "unit/project_textures", ("src/formats/described/project_textures.cpp", "numbers(m.row0, m.row1, m.row2, m.translation)", "numbers(m.row0, m.row1, m.row2, {})")),
+    ("meshes without coordinates lose those of mappings", "unit/project_textures", ("src/formats/described/finish_meshes.cpp", "set < mesh.uv.size(); ++set) take", "set < 0 * mesh.uv.size(); ++set) take")),
 ]

@@ -10,8 +10,10 @@
 #include "formats/described/color_by_normals.h"
 #include "formats/described/described_medium.h"
 #include "formats/described/environment.h"
+#include "formats/described/finish_meshes.h"
 #include "formats/described/image_budget.h"
 #include "formats/described/mix_surfaces.h"
+#include "formats/described/project_textures.h"
 #include "formats/described/transforms.h"
 #include "formats/described/usable_values.h"
 #include "math/double_pi.h"
@@ -40,18 +42,11 @@ DoubleBounds3 box_of(const Mesh& mesh, const DoubleTransform& transform) {
 
 /// Gives each triangle of a mesh the coordinates `corners`.
 void give_coordinates(const std::array<Vec2, 3>& corners, ShapeMesh& shape) {
-    Mesh& mesh = shape.mesh;
-    Mesh split;
-    split.name = std::move(mesh.name);
-    split.origin = std::move(mesh.origin);
-    for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
-        split.positions.push_back(mesh.positions[mesh.indices[i]]);
-        if (!mesh.normals.empty()) split.normals.push_back(mesh.normals[mesh.indices[i]]);
+    shape.mesh = split_faces(shape.mesh);
+    for (std::size_t i = 0; i < shape.mesh.indices.size(); ++i) {
         const std::size_t corner = i % 3;
-        split.uv[0].push_back(corners[corner > 0 && shape.is_turned[i / 3] ? 3 - corner : corner]);
-        split.indices.push_back(static_cast<uint32_t>(i));
+        shape.mesh.uv[0].push_back(corners[corner > 0 && shape.is_turned[i / 3] ? 3 - corner : corner]);
     }
-    mesh = std::move(split);
 }
 
 /// The materials of the scene, each made once.
@@ -77,6 +72,7 @@ struct Assembly {
         Surface surface = from;
         if (shape.area_light) add_emission(parts.area_lights[*shape.area_light], shape, of, mesh, surface);
         if (shape.alpha) set_alpha(surface, parts.alphas[*shape.alpha]);
+        number_mappings(surface);
         if (shape.medium || (surface.is_nothing && !shape.area_light)) {
             fill_surface(shape.medium ? parts.media[*shape.medium] : MediumParameters{}, of.location, sink, surface);
         }
@@ -261,6 +257,7 @@ Scene assemble(Parts parts, const DoubleTransform& scene_from_world, uint64_t fi
                TextureLoader& loader, Sink& sink) {
     separate_mixtures(parts, file_bytes, sink);
     color_by_normals(parts, file_bytes, sink);
+    project_textures(parts, file_bytes, sink);
     Scene scene;
     const std::vector<DoubleTransform> transforms = place_shapes(parts, scene_from_world, scene);
     const DoubleTransform scene_from_file =

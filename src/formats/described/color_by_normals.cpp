@@ -6,28 +6,11 @@
 #include <utility>
 
 #include "base/limits.h"
+#include "formats/described/finish_meshes.h"
 #include "formats/described/transforms.h"
 
 namespace pertev::described {
 namespace {
-
-/// The vertices of a mesh whose faces share none.
-Mesh split_faces(const Mesh& mesh) {
-    Mesh split;
-    split.name = mesh.name;
-    split.origin = mesh.origin;
-    const auto take = [&](const auto& from, auto& to) {
-        if (from.empty()) return;
-        to.reserve(mesh.indices.size());
-        for (const uint32_t i : mesh.indices) to.push_back(from[i]);
-    };
-    take(mesh.positions, split.positions);
-    take(mesh.normals, split.normals);
-    take(mesh.tangents, split.tangents);
-    for (std::size_t set = 0; set < mesh.uv.size(); ++set) take(mesh.uv[set], split.uv[set]);
-    for (std::size_t i = 0; i < mesh.indices.size(); ++i) split.indices.push_back(static_cast<uint32_t>(i));
-    return split;
-}
 
 /// Returns the colour of a surface of this normal, which need not be unit.
 Vec4 color_of(const NormalMix& mix, DoubleVec3 normal) {

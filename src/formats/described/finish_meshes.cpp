@@ -79,4 +79,22 @@ void finish_meshes(std::vector<ShapeMesh>& meshes, const ReadMeshFile& read, Sin
     for (const Messages& messages : said) sink.add_all(messages);
 }
 
+Mesh split_faces(const Mesh& mesh) {
+    Mesh split;
+    split.name = mesh.name;
+    split.origin = mesh.origin;
+    const auto take = [&](const auto& from, auto& to) {
+        if (from.empty()) return;
+        to.reserve(mesh.indices.size());
+        for (const uint32_t i : mesh.indices) to.push_back(from[i]);
+    };
+    take(mesh.positions, split.positions);
+    take(mesh.normals, split.normals);
+    take(mesh.tangents, split.tangents);
+    take(mesh.colors, split.colors);
+    for (std::size_t set = 0; set < mesh.uv.size(); ++set) take(mesh.uv[set], split.uv[set]);
+    for (std::size_t i = 0; i < mesh.indices.size(); ++i) split.indices.push_back(static_cast<uint32_t>(i));
+    return split;
+}
+
 } // namespace pertev::described

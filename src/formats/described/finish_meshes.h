@@ -17,4 +17,7 @@ using ReadMeshFile = std::function<void(ShapeMesh& shape, Sink& sink)>;
 /// unreadable file leaves an empty mesh, with a warning.
 void finish_meshes(std::vector<ShapeMesh>& meshes, const ReadMeshFile& read, Sink& sink);
 
+/// Returns the mesh with vertices of its own for each face.
+Mesh split_faces(const Mesh& mesh);
+
 } // namespace pertev::described

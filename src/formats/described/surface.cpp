@@ -28,7 +28,7 @@ Rgb converted(Curve curve, float amount, Rgb c) {
 Rgb put_image(Surface& surface, TextureSlot slot, const TextureValue& value, Curve curve, float amount) {
     surface.material.*slot = value.ref;
     std::erase_if(surface.images, [slot](const SlotImage& earlier) { return earlier.slot == slot; });
-    SlotImage image{.slot = slot, .made = value.made, .change = {}};
+    SlotImage image{.slot = slot, .made = value.made, .change = {}, .mapping = value.mapping};
     image.change.exponent = value.exponent;
     image.change.grey_of = value.grey_of;
     image.change.curve = curve;

@@ -35,6 +35,7 @@ struct SlotImage {
     TextureSlot slot = nullptr;
     int32_t made = -1; // index into Parts::made; else the slot has an image of the loader
     ImageChange change;
+    std::shared_ptr<const TextureMapping> mapping; // number_mappings() gives it a set of coordinates
     bool operator==(const SlotImage&) const = default;
 };
 

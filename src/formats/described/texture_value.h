@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "math/double_transform.h"
+#include "formats/described/texture_mapping.h"
 #include "math/rgb.h"
 #include "scene/texture.h"
 
@@ -55,8 +55,9 @@ struct TextureValue {
     GreyOf grey_of = GreyOf::Channels; // applied to the texels before factor and offset
     bool ignores_alpha = false;        // an opacity is that of the colour, even if the image has an alpha channel
 
-    bool is_of_vertices = false;                // the colours of a mesh's vertices, times factor
-    std::shared_ptr<const NormalMix> by_normal; // the value by direction, of which `factor` is the mean
+    std::shared_ptr<const TextureMapping> mapping; // gives the coordinates of its image; null: the mesh does
+    bool is_of_vertices = false;                   // the colours of a mesh's vertices, times factor
+    std::shared_ptr<const NormalMix> by_normal;    // the value by direction, of which `factor` is the mean
 
     bool has_image() const { return ref.has_image() || made >= 0; }
     bool varies() const { return has_image() || by_normal != nullptr; }

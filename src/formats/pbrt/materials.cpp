@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -312,8 +313,10 @@ void read_bumps(const MaterialSource& source, Surface& surface) {
     Sink& sink = source.context.sink;
     for (const char* const name : {"displacement", "bumpmap"}) {
         if (!source.parameters.has(name)) continue;
-        const TextureValue heights = source.textures.number(source.parameters, name, 0);
+        TextureValue heights = source.textures.number(source.parameters, name, 0);
         if (!heights.has_image()) continue; // a constant height changes nothing
+        if (std::exchange(heights.mapping, nullptr) != nullptr)
+            sink.leave_out({source.parameters.location(), "the mapping of a displacement is left out; uv is used"});
         surface.heights = heights;
         surface.has_heights = true;
     }

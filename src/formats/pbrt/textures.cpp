@@ -2,11 +2,13 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include <fmt/format.h>
 
 #include "base/message_text.h"
 #include "formats/described/make_texture.h"
+#include "formats/described/transforms.h"
 #include "formats/files/closest_name.h"
 #include "formats/files/parse_number.h"
 #include "formats/pbrt/colors.h"
@@ -28,9 +30,9 @@ void Textures::define(const std::string& name, const std::string& kind, const st
 
 TextureValue Textures::value_of(const std::string& type, bool is_color, const DoubleTransform& world_from_texture,
                                 Parameters& parameters) {
-    if (type == "imagemap") return image_map(parameters);
+    if (type == "imagemap") return image_map(world_from_texture, parameters);
     if (type == "constant") return part(parameters, "value", is_color, 1);
-    if (type == "checkerboard") return checkerboard(is_color, parameters);
+    if (type == "checkerboard") return checkerboard(is_color, world_from_texture, parameters);
     if (type == "scale") {
         const bool is_version_3 = parameters.contains("tex1") || parameters.contains("tex2");
         const TextureValue a = part(parameters, is_version_3 ? "tex1" : "tex", is_color, 1);
@@ -87,12 +89,34 @@ TextureValue Textures::part(Parameters& parameters, std::string_view name, bool 
                         .value_or(grey(missing)));
 }
 
-void Textures::read_mapping(Parameters& parameters, TextureRef& ref) {
+void Textures::read_mapping(const DoubleTransform& world_from_texture, Parameters& parameters, TextureValue& value) {
     Sink& sink = context_.sink;
-    if (const std::string mapping = parameters.text("mapping", "uv", sink); mapping != "uv") {
+    TextureRef& ref = value.ref;
+    constexpr std::array<std::string_view, 4> kMappings = {"uv", "planar", "spherical", "cylindrical"};
+    const std::string name = parameters.text("mapping", "uv", sink);
+    const auto known = std::ranges::find(kMappings, name);
+    if (known == kMappings.end())
+        sink.leave_out({parameters.location(), fmt::format("the mapping {} is left out; uv is used{}", shortened(name),
+                                                           did_you_mean(name, kMappings))});
+    if (known != kMappings.end() && name != "uv") {
+        TextureMapping mapping;
+        mapping.kind = static_cast<MappingKind>(known - kMappings.begin() - 1);
+        const bool is_planar = mapping.kind == MappingKind::Planar;
+        // pbrt-v3 has planes in the world.
+        if (!is_planar || !context_.is_version_3) mapping.texture_from_world = inverse(world_from_texture);
+        if (is_planar) {
+            mapping.u_axis = parameters.vector("v1", sink).value_or(mapping.u_axis);
+            mapping.v_axis = parameters.vector("v2", sink).value_or(mapping.v_axis);
+            mapping.u_offset = parameters.number("udelta", 0, sink);
+            mapping.v_offset = parameters.number("vdelta", 0, sink);
+        }
+        parameters.ignore({"uscale", "vscale", "udelta", "vdelta"});
+        if (is_finite(mapping.texture_from_world)) {
+            value.mapping = std::make_shared<const TextureMapping>(mapping);
+            return;
+        }
         sink.leave_out(
-            {parameters.location(), fmt::format("the mapping {} is left out; uv is used", shortened(mapping))});
-        parameters.ignore({"v1", "v2"});
+            {parameters.location(), "a mapping is left out, because its transform has no inverse; uv is used"});
     }
     const auto u_scale = static_cast<float>(parameters.number("uscale", 1, sink));
     const auto v_scale = static_cast<float>(parameters.number("vscale", 1, sink));
@@ -115,7 +139,7 @@ TextureValue Textures::image_file(const FileLocation& from, const std::string& n
     return value;
 }
 
-TextureValue Textures::image_map(Parameters& parameters) {
+TextureValue Textures::image_map(const DoubleTransform& world_from_texture, Parameters& parameters) {
     Sink& sink = context_.sink;
     const std::string name = parameters.text("filename", "", sink);
     if (name.empty()) {
@@ -147,7 +171,7 @@ TextureValue Textures::image_map(Parameters& parameters) {
             {parameters.location(),
              fmt::format("the encoding {} is left out; expected sRGB, linear or gamma NUMBER", shortened(encoding))});
     }
-    read_mapping(parameters, value.ref);
+    read_mapping(world_from_texture, parameters, value);
     const auto scale = static_cast<float>(parameters.number("scale", 1, sink));
     value = value.scaled(grey(scale));
     if (parameters.truth("invert", false, sink)) {
@@ -158,11 +182,11 @@ TextureValue Textures::image_map(Parameters& parameters) {
     return value;
 }
 
-TextureValue Textures::checkerboard(bool is_color, Parameters& parameters) {
+TextureValue Textures::checkerboard(bool is_color, const DoubleTransform& world_from_texture, Parameters& parameters) {
     const TextureValue even = part(parameters, "tex1", is_color, 1), odd = part(parameters, "tex2", is_color, 0);
     parameters.ignore({"aamode"});
     TextureValue value;
-    read_mapping(parameters, value.ref);
+    read_mapping(world_from_texture, parameters, value);
     if (parameters.integer("dimension", 2, context_.sink) != 2) {
         context_.sink.leave_out(
             {parameters.location(), "a checkerboard of three dimensions is left out; its mean is used"});

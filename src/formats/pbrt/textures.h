@@ -43,11 +43,11 @@ private:
                           Parameters& parameters);
     TextureValue direction_mix(bool is_color, const DoubleTransform& world_from_texture, Parameters& parameters);
     TextureValue part(Parameters& parameters, std::string_view name, bool is_color, float missing);
-    TextureValue image_map(Parameters& parameters);
-    TextureValue checkerboard(bool is_color, Parameters& parameters);
+    TextureValue image_map(const DoubleTransform& world_from_texture, Parameters& parameters);
+    TextureValue checkerboard(bool is_color, const DoubleTransform& world_from_texture, Parameters& parameters);
     TextureValue mixture(const TextureValue& a, const TextureValue& b, const TextureValue& amount,
                          const Parameters& parameters);
-    void read_mapping(Parameters& parameters, TextureRef& ref);
+    void read_mapping(const DoubleTransform& world_from_texture, Parameters& parameters, TextureValue& value);
 
     const Context& context_;
     std::map<std::string, TextureValue, std::less<>> textures_;

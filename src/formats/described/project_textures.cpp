@@ -1,0 +1,190 @@
+#include "formats/described/project_textures.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "base/limits.h"
+#include "formats/described/transforms.h"
+#include "math/portable_math.h"
+
+namespace pertev::described {
+namespace {
+
+using Mappings = std::vector<std::shared_ptr<const TextureMapping>>;
+constexpr std::size_t kMaxMappings = kTextureSets - 1;
+
+/// Coordinates of a vertex as pbrt has them.
+struct Coordinates {
+    double s = 0, t = 0;
+    bool is_on_axis = false; // the angle around the axis is not defined
+};
+
+/// The coordinate that is the same place at 0 and at 1.
+double Coordinates::*around_of(MappingKind kind) {
+    return kind == MappingKind::Spherical ? &Coordinates::t : &Coordinates::s;
+}
+
+/// Returns the angle of a vector over a whole turn, from -1/2 to 1/2.
+double share_of_turn(double y, double x) {
+    return static_cast<double>(atan2(static_cast<float>(y), static_cast<float>(x))) / (2 * kPiDouble);
+}
+
+Coordinates coordinates_at(const TextureMapping& by, DoubleVec3 world) {
+    const DoubleVec3 p = transform_point(by.texture_from_world, world);
+    if (by.kind == MappingKind::Planar) return {by.u_offset + dot(p, by.u_axis), by.v_offset + dot(p, by.v_axis)};
+    const double length = std::sqrt(dot(p, p)), aside = std::sqrt(p.x * p.x + p.y * p.y);
+    const bool is_on_axis = !(aside > 1e-6 * length);
+    if (by.kind == MappingKind::Cylindrical)
+        return {0.5 + share_of_turn(p.y, p.x), length > 0 ? p.z / length : 0, is_on_axis};
+    const double turn = share_of_turn(p.y, p.x);
+    return {2 * share_of_turn(aside, p.z), turn < 0 ? turn + 1 : turn, is_on_axis};
+}
+
+/// Appends a copy of a vertex, without its set `except`. Returns its number.
+uint32_t append_copy(Mesh& mesh, uint32_t vertex, std::size_t except) {
+    const auto copy = [vertex](auto& values) {
+        if (values.empty()) return;
+        const auto value = values[vertex]; // the array moves
+        values.push_back(value);
+    };
+    copy(mesh.positions);
+    copy(mesh.normals);
+    copy(mesh.tangents);
+    copy(mesh.colors);
+    for (std::size_t set = 0; set < mesh.uv.size(); ++set) {
+        if (set != except) copy(mesh.uv[set]);
+    }
+    return static_cast<uint32_t>(mesh.positions.size() - 1);
+}
+
+/// Adds a set of coordinates. Triangles across the line where the angle around an axis ends a turn, and those at the
+/// axis, get vertices of their own, so that they do not have the whole picture.
+void add_set(Mesh& mesh, const TextureMapping& by, const DoubleTransform& world_from_mesh, std::size_t set) {
+    std::vector<Coordinates> at;
+    for (const Vec3& position : mesh.positions)
+        at.push_back(coordinates_at(by, transform_point(world_from_mesh, to_double(position))));
+    if (by.kind != MappingKind::Planar) {
+        double Coordinates::*const around = around_of(by.kind);
+        const auto moved = [&](uint32_t vertex, double to) {
+            at.push_back(at[vertex]);
+            at.back().*around = to;
+            return append_copy(mesh, vertex, set);
+        };
+        std::map<uint32_t, uint32_t> a_turn_later;
+        for (std::size_t first = 0; first + 2 < mesh.indices.size(); first += 3) {
+            double least = kInfinity, greatest = -kInfinity, sum = 0;
+            int count = 0;
+            const auto visit_off_axis = [&](const auto& visit) {
+                for (std::size_t k = first; k < first + 3; ++k) {
+                    if (!at[mesh.indices[k]].is_on_axis) visit(mesh.indices[k]);
+                }
+            };
+            visit_off_axis([&](uint32_t& vertex) {
+                least = std::min(least, at[vertex].*around), greatest = std::max(greatest, at[vertex].*around);
+            });
+            visit_off_axis([&](uint32_t& vertex) {
+                const double own = at[vertex].*around;
+                if (greatest - least > 0.5 && own < greatest - 0.5) {
+                    const auto [known, is_new] = a_turn_later.try_emplace(vertex, 0);
+                    if (is_new) known->second = moved(vertex, own + 1);
+                    vertex = known->second;
+                }
+                sum += at[vertex].*around, ++count;
+            });
+            if (count == 0 || count == 3) continue;
+            for (std::size_t k = first; k < first + 3; ++k) {
+                uint32_t& vertex = mesh.indices[k];
+                if (at[vertex].is_on_axis) vertex = moved(vertex, sum / count);
+            }
+        }
+    }
+    std::vector<Vec2>& uv = mesh.uv[set];
+    uv.clear();
+    const auto usable = [](double x) { return std::isfinite(static_cast<float>(x)) ? static_cast<float>(x) : 0.0f; };
+    for (const Coordinates& c : at) uv.push_back({usable(c.s), usable(1 - c.t)}); // v points down
+}
+
+/// Has a shape use the mesh's own coordinates. `without` has the surfaces that already do.
+void leave_out_mappings(Parts& parts, Placed& shape, std::map<uint32_t, uint32_t>& without) {
+    const auto [number, is_new] = without.try_emplace(shape.surface, static_cast<uint32_t>(parts.surfaces.size()));
+    if (is_new) {
+        Surface plain = parts.surfaces[shape.surface];
+        for (SlotImage& image : plain.images) {
+            image.mapping.reset();
+            (plain.material.*image.slot).uv_set = 0;
+        }
+        parts.surfaces.push_back(std::move(plain));
+    }
+    shape.surface = number->second;
+    if (!shape.alpha || !parts.alphas[*shape.alpha].mapping) return;
+    TextureValue alpha = parts.alphas[*shape.alpha];
+    alpha.mapping.reset();
+    shape.alpha = static_cast<uint32_t>(parts.alphas.size());
+    parts.alphas.push_back(std::move(alpha));
+}
+
+} // namespace
+
+Mappings number_mappings(Surface& surface) {
+    Mappings sets;
+    for (const SlotImage& image : surface.images) {
+        if (!image.mapping) continue;
+        const auto known = std::ranges::find_if(sets, [&](const auto& other) { return *other == *image.mapping; });
+        const auto number = static_cast<std::size_t>(known - sets.begin());
+        if (known == sets.end() && number < kMaxMappings) sets.push_back(image.mapping);
+        (surface.material.*image.slot).uv_set = number < kMaxMappings ? static_cast<uint8_t>(number + 1) : 0;
+    }
+    return sets;
+}
+
+void project_textures(Parts& parts, uint64_t file_bytes, Sink& sink) {
+    for (Surface& surface : parts.surfaces) number_mappings(surface);
+    const auto needs = [](const Surface& surface) {
+        return std::ranges::any_of(surface.images, [](const SlotImage& image) { return image.mapping != nullptr; });
+    };
+    using Place = std::array<double, 12>;
+    std::map<std::tuple<uint32_t, Place, std::vector<const TextureMapping*>>, uint32_t> known;
+    uint64_t left = justified_bytes(kFreeMeshBytes, file_bytes);
+    std::map<uint32_t, uint32_t> without; // surfaces that use the mesh's own coordinates
+    for (Placed& shape : parts.placed) {
+        const bool has_alpha = shape.alpha && parts.alphas[*shape.alpha].mapping;
+        if (!has_alpha && !needs(parts.surfaces[shape.surface])) continue;
+        Surface surface = parts.surfaces[shape.surface];
+        if (shape.alpha) set_alpha(surface, parts.alphas[*shape.alpha]);
+        const Mappings sets = number_mappings(surface);
+        const ShapeMesh& from = parts.meshes[shape.mesh];
+        const DoubleTransform m = compose(shape.world_from_mesh, from.shape_from_mesh);
+        const auto numbers = [](DoubleVec3 a, DoubleVec3 b, DoubleVec3 c, DoubleVec3 d) {
+            return Place{a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, d.x, d.y, d.z};
+        };
+        std::vector<const TextureMapping*> pointers;
+        for (const auto& mapping : sets) pointers.push_back(mapping.get());
+        const auto [copy, is_new] =
+            known.try_emplace({shape.mesh, numbers(m.row0, m.row1, m.row2, m.translation), pointers}, shape.mesh);
+        if (is_new) {
+            // Every corner may get a vertex of its own.
+            constexpr uint64_t kVertexBytes = 3 * sizeof(Vec4) + kTextureSets * sizeof(Vec2) + sizeof(uint32_t);
+            const uint64_t bytes = kVertexBytes * (from.mesh.positions.size() + from.mesh.indices.size());
+            if (bytes > left || !is_finite(m)) {
+                sink.leave_out({from.location, "the mapping of a texture is left out; uv is used"});
+            } else {
+                left -= bytes;
+                ShapeMesh made = from;
+                for (std::size_t k = 0; k < sets.size(); ++k) add_set(made.mesh, *sets[k], m, k + 1);
+                copy->second = static_cast<uint32_t>(parts.meshes.size());
+                parts.meshes.push_back(std::move(made));
+            }
+        }
+        if (copy->second == shape.mesh) {
+            leave_out_mappings(parts, shape, without);
+        } else {
+            shape.mesh = copy->second;
+        }
+    }
+}
+
+} // namespace pertev::described
