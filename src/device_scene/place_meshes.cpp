@@ -41,7 +41,9 @@ Error too_many_copies(const MeshPlacement& placement, std::size_t i, const Insta
 std::vector<bool> small_meshes(const Scene& scene, const std::vector<uint32_t>& uses) {
     std::vector<bool> is_small(uses.size());
     if (!scene.bakes_small_meshes) return is_small;
-    const auto copied_triangles = [&](uint32_t mesh) { return uses[mesh] * scene.meshes[mesh].triangle_count(); };
+    const auto copied_triangles = [&](uint32_t mesh) {
+        return uint64_t{uses[mesh]} * scene.meshes[mesh].triangle_count();
+    };
     std::vector<uint32_t> order;
     for (uint32_t mesh = 0; mesh < uses.size(); ++mesh) {
         if (uses[mesh] > 1) order.push_back(mesh);
@@ -98,7 +100,7 @@ std::vector<BvhTriangle> baked_triangles(const Scene& scene, const MeshPlacement
     }
     if (count > kMaxBvhTriangles) {
         throw Error(ErrorCode::OverLimit, "scene", "",
-                    fmt::format("the scene has {} triangles outside shared meshes; one tree holds at most {}", count,
+                    fmt::format("the baked meshes of the scene have {} triangles; one tree holds at most {}", count,
                                 kMaxBvhTriangles));
     }
     auto triangles = array_on_huge_pages<BvhTriangle>(count);

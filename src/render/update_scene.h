@@ -15,8 +15,8 @@ namespace pertev {
 /// same object that `before` was made of, changed in place. Trees are handled as follows:
 ///   moved instances     get a new TLAS, and keep the BLASes. A baked one (MeshPlacement) counts as a
 ///   deformed
-///                       mesh of the tree over all baked ones; an instance that moves often should be marked as movable
-///                       (scene/animation.h), so that it is not baked
+///                       mesh of the tree over all baked ones; an instance that moves often should be apart
+///                       (PrepareOptions), so that it is not baked
 ///   deformed meshes     have their trees refitted, or at first replaced by one that can be (update_binary_trees), and
 ///                       converted to other layouts again; kd-trees and octrees, whose planes do not move, are rebuilt
 ///   replaced meshes     have their trees rebuilt

@@ -141,14 +141,17 @@ uint32_t MovingScene::edit(const std::function<SceneUpdate(Scene&)>& edit, Sink&
 void MovingScene::count_baked_moves(const SceneUpdate& update, Sink& sink) {
     constexpr int kOften = 3;
     constexpr uint64_t kLargeTree = 20'000; // triangles; refitting fewer takes a few milliseconds at most
-    const std::vector<bool>& is_baked = prepared_.is_baked;
-    const auto moved = std::ranges::find_if(update.moved_instances, [&](uint32_t i) { return is_baked[i]; });
+    // Skewed instances are baked whatever they are named.
+    const auto could_be_apart = [&](uint32_t i) {
+        return prepared_.is_baked[i] && !is_skewed(scene().instances[i].world_from_local);
+    };
+    const auto moved = std::ranges::find_if(update.moved_instances, could_be_apart);
     if (moved == update.moved_instances.end() || ++baked_moves_ != kOften) return;
     const uint64_t triangles = prepared_.trees.triangles.front();
     if (triangles < kLargeTree) return;
     sink.warn(
-        fmt::format("{} is in a tree of {} triangles, which each move refits; name it in `movable`, and it has one "
-                    "of its own",
+        fmt::format("{} is in a tree of {} triangles, which each move refits; name it in `movable`, so that it gets "
+                    "one of its own",
                     numbered("instance", *moved, scene().instances[*moved].name), triangles));
 }
 

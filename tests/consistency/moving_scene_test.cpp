@@ -237,19 +237,19 @@ TEST_CASE("the third move of an instance in a large tree causes one warning") {
         update.moved_instances = {1};
         return update;
     };
-    const auto told_in = [&](int moves, PrepareOptions options) {
+    const auto warnings_in = [&](int moves, PrepareOptions options) {
         Messages messages;
         MovingScene moving(scene, std::nullopt, std::move(options), messages);
         for (int i = 0; i < moves; ++i) moving.edit(move, messages);
         return messages.all().size();
     };
-    CHECK(told_in(2, {}) == 0);
-    CHECK(told_in(5, {}) == 1);
+    CHECK(warnings_in(2, {}) == 0);
+    CHECK(warnings_in(5, {}) == 1);
     PrepareOptions apart;
     apart.apart = {false, true};
-    CHECK(told_in(5, apart) == 0);
+    CHECK(warnings_in(5, apart) == 0);
     scene.meshes[0] = sphere(3);
-    CHECK(told_in(5, {}) == 0);
+    CHECK(warnings_in(5, {}) == 0);
 }
 
 TEST_CASE("a step after a failed one is complete") {

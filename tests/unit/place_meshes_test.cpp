@@ -63,6 +63,7 @@ TEST_CASE("shared meshes are baked as long as the smallest of them have few tria
     const Scene three = scene_with({most / 2, 2, most / 2 - 1}, 2);
     CHECK(place_meshes(three).is_baked == second);
     CHECK(place_meshes(three).mesh_tree_count == 2);
+    CHECK(place_meshes(scene_with({1u << 16}, 1u << 16)).is_baked == Baked(1u << 16, false)); // 2^32 triangles
     Scene two = scene_with({2, 12}, 2);
     CHECK(place_meshes(two, {}, {true, false, false, false}).is_baked == Baked{false, true, true, true});
     two.instances[2].is_hidden = true;

@@ -136,6 +136,35 @@ TEST_CASE("two mappings of one material have two sets, a product keeps one, and 
     CHECK(read.mesh(1).uv[2].size() == 3);
 }
 
+TEST_CASE("coordinates repeat around an axis, and large triangles and a fourth mapping cause messages") {
+    const std::string clamped = "\"string wrap\" \"clamp\" \"string mapping\" ";
+    const TextureRef sphere =
+        read_mapped(textured(clamped + "\"spherical\"") + kMappedSphere).material().base_color_texture;
+    CHECK(sphere.wrap_t == Wrap::Repeat);
+    CHECK(sphere.wrap_s == Wrap::ClampToEdge);
+    const TextureRef cylinder =
+        read_mapped(textured(clamped + "\"cylindrical\"") + kMappedSphere).material().base_color_texture;
+    CHECK(cylinder.wrap_s == Wrap::Repeat);
+    CHECK(cylinder.wrap_t == Wrap::ClampToEdge);
+    const std::string large = "Shape \"trianglemesh\" \"point3 P\" [1 -9 0 1 9 0 1 0 9] \"integer indices\" [0 1 2]\n";
+    const auto messages_of = [](const std::string& world) { return read_mapped(world).messages.all().size(); };
+    CHECK(messages_of(textured("\"string mapping\" \"spherical\"") + large) == 1 + messages_of(textured("") + large));
+    std::string four, slots;
+    for (const char* const slot : {"reflectance", "roughness", "thickness", "eta"}) {
+        four += fmt::format(
+            "Texture \"{0}\" \"{1}\" \"imagemap\" \"string filename\" \"a.exr\" \"string mapping\" \"planar\" "
+            "\"float udelta\" {2}\n",
+            slot, slots.empty() ? "spectrum" : "float", four.size());
+        slots += fmt::format(" \"texture {0}\" \"{0}\"", slot);
+    }
+    const Projected read = read_mapped(four + "Material \"coateddiffuse\"" + slots + "\n" + kMappedTriangle);
+    CHECK(read.mesh().uv[1].size() == 3);
+    const Projected far =
+        read_mapped(textured("\"string mapping\" \"spherical\"", "Scale 1e60 1e60 1e60\n") + kMappedTriangle);
+    CHECK(static_cast<double>(far.mesh().uv[1].at(0).x) ==
+          doctest::Approx(std::acos(3 / std::sqrt(14.0)) / 3.14159265).epsilon(1e-5));
+}
+
 TEST_CASE("pbrt-v3 has planes in the world, and what has no mapping is left out with a message") {
     const Projected version_3 =
         read_mapped("Translate 7 0 0\nTexture \"t\" \"color\" \"checkerboard\" \"string mapping\" "

@@ -1,5 +1,6 @@
 #include "formats/described/assemble.h"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -180,8 +181,10 @@ void give_missing_coordinates(Parts& parts) {
     std::vector<bool> has_textures(parts.meshes.size());
     for (const Placed& shape : parts.placed) {
         const Surface& surface = parts.surfaces[shape.surface];
-        if (!surface.images.empty() || surface.has_heights || surface.material.normal_texture.has_image() ||
-            (shape.alpha && parts.alphas[*shape.alpha].has_image()) ||
+        const auto has_own = [&](const SlotImage& image) { return (surface.material.*image.slot).uv_set != 0; };
+        if (!std::ranges::all_of(surface.images, has_own) || surface.has_heights ||
+            surface.material.normal_texture.has_image() ||
+            (shape.alpha && parts.alphas[*shape.alpha].has_image() && !parts.alphas[*shape.alpha].mapping) ||
             (shape.area_light && parts.area_lights[*shape.area_light].image.has_image()))
             has_textures[shape.mesh] = true;
     }

@@ -17,13 +17,13 @@ namespace {
 using Mappings = std::vector<std::shared_ptr<const TextureMapping>>;
 constexpr std::size_t kMaxMappings = kTextureSets - 1;
 
-/// Coordinates of a vertex as pbrt has them.
+/// The coordinates of a vertex by pbrt's formulas, whose t points up.
 struct Coordinates {
     double s = 0, t = 0;
     bool is_on_axis = false; // the angle around the axis is not defined
 };
 
-/// The coordinate that is the same place at 0 and at 1.
+/// Returns the coordinate that goes around the axis, for which 0 and 1 are one place.
 double Coordinates::*around_of(MappingKind kind) {
     return kind == MappingKind::Spherical ? &Coordinates::t : &Coordinates::s;
 }
@@ -34,13 +34,16 @@ double share_of_turn(double y, double x) {
 }
 
 Coordinates coordinates_at(const TextureMapping& by, DoubleVec3 world) {
-    const DoubleVec3 p = transform_point(by.texture_from_world, world);
-    if (by.kind == MappingKind::Planar) return {by.u_offset + dot(p, by.u_axis), by.v_offset + dot(p, by.v_axis)};
+    const DoubleVec3 at = transform_point(by.texture_from_world, world);
+    if (by.kind == MappingKind::Planar) return {by.u_offset + dot(at, by.u_axis), by.v_offset + dot(at, by.v_axis)};
+    // The largest component becomes 1, so that no square overflows.
+    const double size = std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)});
+    if (!(size > 0) || !std::isfinite(size)) return {0, 0, true};
+    const DoubleVec3 p = {at.x / size, at.y / size, at.z / size};
     const double length = std::sqrt(dot(p, p)), aside = std::sqrt(p.x * p.x + p.y * p.y);
-    const bool is_on_axis = !(aside > 1e-6 * length);
-    if (by.kind == MappingKind::Cylindrical)
-        return {0.5 + share_of_turn(p.y, p.x), length > 0 ? p.z / length : 0, is_on_axis};
     const double turn = share_of_turn(p.y, p.x);
+    const bool is_on_axis = !(aside > 1e-6 * length);
+    if (by.kind == MappingKind::Cylindrical) return {0.5 + turn, p.z / length, is_on_axis};
     return {2 * share_of_turn(aside, p.z), turn < 0 ? turn + 1 : turn, is_on_axis};
 }
 
@@ -61,9 +64,12 @@ uint32_t append_copy(Mesh& mesh, uint32_t vertex, std::size_t except) {
     return static_cast<uint32_t>(mesh.positions.size() - 1);
 }
 
-/// Adds a set of coordinates. Triangles across the line where the angle around an axis ends a turn, and those at the
-/// axis, get vertices of their own, so that they do not have the whole picture.
-void add_set(Mesh& mesh, const TextureMapping& by, const DoubleTransform& world_from_mesh, std::size_t set) {
+/// Adds a set of coordinates. Triangles at the axis and across the seam, where the angle around it is a whole turn, get
+/// vertices of their own, so that they do not have the whole picture. Returns whether triangles are large: coordinates
+/// are linear across them.
+bool add_set(Mesh& mesh, const TextureMapping& by, const DoubleTransform& world_from_mesh, std::size_t set) {
+    constexpr double kLargeSpan = 1.0 / 16; // of a turn
+    bool has_large = false;
     std::vector<Coordinates> at;
     for (const Vec3& position : mesh.positions)
         at.push_back(coordinates_at(by, transform_point(world_from_mesh, to_double(position))));
@@ -95,6 +101,8 @@ void add_set(Mesh& mesh, const TextureMapping& by, const DoubleTransform& world_
                 }
                 sum += at[vertex].*around, ++count;
             });
+            const double span = greatest - least;
+            has_large = has_large || (count > 1 && std::min(span, std::abs(1 - span)) > kLargeSpan);
             if (count == 0 || count == 3) continue;
             for (std::size_t k = first; k < first + 3; ++k) {
                 uint32_t& vertex = mesh.indices[k];
@@ -106,26 +114,33 @@ void add_set(Mesh& mesh, const TextureMapping& by, const DoubleTransform& world_
     uv.clear();
     const auto usable = [](double x) { return std::isfinite(static_cast<float>(x)) ? static_cast<float>(x) : 0.0f; };
     for (const Coordinates& c : at) uv.push_back({usable(c.s), usable(1 - c.t)}); // v points down
+    return has_large;
 }
 
-/// Has a shape use the mesh's own coordinates. `without` has the surfaces that already do.
-void leave_out_mappings(Parts& parts, Placed& shape, std::map<uint32_t, uint32_t>& without) {
-    const auto [number, is_new] = without.try_emplace(shape.surface, static_cast<uint32_t>(parts.surfaces.size()));
-    if (is_new) {
-        Surface plain = parts.surfaces[shape.surface];
-        for (SlotImage& image : plain.images) {
-            image.mapping.reset();
-            (plain.material.*image.slot).uv_set = 0;
-        }
-        parts.surfaces.push_back(std::move(plain));
+/// Surfaces and opacities that use the coordinates of meshes in place of mappings, by those that do not.
+struct WithoutMappings {
+    std::map<uint32_t, uint32_t> surfaces, alphas;
+
+    void use_in(Parts& parts, Placed& shape) {
+        const auto take = [](std::map<uint32_t, uint32_t>& known, auto& all, uint32_t& number, const auto& make) {
+            const auto [plain, is_new] = known.try_emplace(number, static_cast<uint32_t>(all.size()));
+            if (is_new) all.push_back(make(all[number]));
+            number = plain->second;
+        };
+        take(surfaces, parts.surfaces, shape.surface, [](Surface surface) {
+            for (SlotImage& image : surface.images) {
+                image.mapping.reset();
+                (surface.material.*image.slot).uv_set = 0;
+            }
+            return surface;
+        });
+        if (!shape.alpha || !parts.alphas[*shape.alpha].mapping) return;
+        take(alphas, parts.alphas, *shape.alpha, [](TextureValue alpha) {
+            alpha.mapping.reset();
+            return alpha;
+        });
     }
-    shape.surface = number->second;
-    if (!shape.alpha || !parts.alphas[*shape.alpha].mapping) return;
-    TextureValue alpha = parts.alphas[*shape.alpha];
-    alpha.mapping.reset();
-    shape.alpha = static_cast<uint32_t>(parts.alphas.size());
-    parts.alphas.push_back(std::move(alpha));
-}
+};
 
 } // namespace
 
@@ -142,22 +157,21 @@ Mappings number_mappings(Surface& surface) {
 }
 
 void project_textures(Parts& parts, uint64_t file_bytes, Sink& sink) {
+    const auto has_mapping = [](const SlotImage& image) { return image.mapping != nullptr; };
     for (Surface& surface : parts.surfaces) number_mappings(surface);
-    const auto needs = [](const Surface& surface) {
-        return std::ranges::any_of(surface.images, [](const SlotImage& image) { return image.mapping != nullptr; });
-    };
     using Place = std::array<double, 12>;
     std::map<std::tuple<uint32_t, Place, std::vector<const TextureMapping*>>, uint32_t> known;
     uint64_t left = justified_bytes(kFreeMeshBytes, file_bytes);
-    std::map<uint32_t, uint32_t> without; // surfaces that use the mesh's own coordinates
+    WithoutMappings without;
     for (Placed& shape : parts.placed) {
         const bool has_alpha = shape.alpha && parts.alphas[*shape.alpha].mapping;
-        if (!has_alpha && !needs(parts.surfaces[shape.surface])) continue;
+        if (!has_alpha && std::ranges::none_of(parts.surfaces[shape.surface].images, has_mapping)) continue;
+        const ShapeMesh& from = parts.meshes[shape.mesh];
+        const DoubleTransform m = compose(shape.world_from_mesh, from.shape_from_mesh);
+        if (from.mesh.indices.empty() || !is_finite(m)) continue; // nothing of it is drawn
         Surface surface = parts.surfaces[shape.surface];
         if (shape.alpha) set_alpha(surface, parts.alphas[*shape.alpha]);
         const Mappings sets = number_mappings(surface);
-        const ShapeMesh& from = parts.meshes[shape.mesh];
-        const DoubleTransform m = compose(shape.world_from_mesh, from.shape_from_mesh);
         const auto numbers = [](DoubleVec3 a, DoubleVec3 b, DoubleVec3 c, DoubleVec3 d) {
             return Place{a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, d.x, d.y, d.z};
         };
@@ -166,21 +180,30 @@ void project_textures(Parts& parts, uint64_t file_bytes, Sink& sink) {
         const auto [copy, is_new] =
             known.try_emplace({shape.mesh, numbers(m.row0, m.row1, m.row2, m.translation), pointers}, shape.mesh);
         if (is_new) {
-            // Every corner may get a vertex of its own.
+            const auto is_left_out = [&](const SlotImage& image) {
+                return has_mapping(image) && (surface.material.*image.slot).uv_set == 0;
+            };
+            if (std::ranges::any_of(surface.images, is_left_out))
+                sink.leave_out({from.location, "a fourth mapping of one material is left out; uv is used"});
+            // Every corner may get a vertex of its own for each set.
             constexpr uint64_t kVertexBytes = 3 * sizeof(Vec4) + kTextureSets * sizeof(Vec2) + sizeof(uint32_t);
-            const uint64_t bytes = kVertexBytes * (from.mesh.positions.size() + from.mesh.indices.size());
-            if (bytes > left || !is_finite(m)) {
+            const uint64_t vertices = from.mesh.positions.size() + sets.size() * from.mesh.indices.size(),
+                           bytes = sizeof(ShapeMesh) + kVertexBytes * vertices;
+            if (bytes > left) {
                 sink.leave_out({from.location, "the mapping of a texture is left out; uv is used"});
             } else {
                 left -= bytes;
                 ShapeMesh made = from;
-                for (std::size_t k = 0; k < sets.size(); ++k) add_set(made.mesh, *sets[k], m, k + 1);
+                bool has_large = false;
+                for (std::size_t k = 0; k < sets.size(); ++k)
+                    has_large = add_set(made.mesh, *sets[k], m, k + 1) || has_large;
+                if (has_large) sink.warn({from.location, "the mapping of a texture is linear across large triangles"});
                 copy->second = static_cast<uint32_t>(parts.meshes.size());
                 parts.meshes.push_back(std::move(made));
             }
         }
         if (copy->second == shape.mesh) {
-            leave_out_mappings(parts, shape, without);
+            without.use_in(parts, shape);
         } else {
             shape.mesh = copy->second;
         }

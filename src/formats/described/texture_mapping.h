@@ -1,6 +1,6 @@
 #pragma once
 
-// Texture coordinates that come from where a surface is, and not from its mesh.
+// A mapping gives a surface texture coordinates by where it is. Its v points up, as in pbrt.
 //
 // Source: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., section 10.2.
 

@@ -111,6 +111,9 @@ void Textures::read_mapping(const DoubleTransform& world_from_texture, Parameter
             mapping.v_offset = parameters.number("vdelta", 0, sink);
         }
         parameters.ignore({"uscale", "vscale", "udelta", "vdelta"});
+        // At the seam coordinates go on beyond 1, where pbrt's begin at 0 again.
+        if (mapping.kind == MappingKind::Spherical) ref.wrap_t = Wrap::Repeat;
+        if (mapping.kind == MappingKind::Cylindrical) ref.wrap_s = Wrap::Repeat;
         if (is_finite(mapping.texture_from_world)) {
             value.mapping = std::make_shared<const TextureMapping>(mapping);
             return;
