@@ -37,8 +37,8 @@ std::string given_token(const std::string& file) {
         return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-' || c == '_';
     };
     if (token.size() < kFewest || token.size() > kMost || !std::ranges::all_of(token, is_plain)) {
-        throw Error(ErrorCode::BadInput, file.empty() ? "PERTEV_TOKEN" : "token_file", file,
-                    "expected 16 to 128 letters, digits, - and _");
+        const std::string where = file.empty() ? "the environment's PERTEV_TOKEN: " : "";
+        throw Error(ErrorCode::BadInput, "token_file", file, where + "expected 16 to 128 letters, digits, - and _");
     }
     return token;
 }

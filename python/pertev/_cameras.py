@@ -36,8 +36,9 @@ class Cameras:
     """Cameras of one call of render() or render_chunks().
 
     poses            (N, 4, 4) or (N, 3, 4), world from camera, in the coordinates of the file
-    K                (3, 3) or (N, 3, 3), or focal lengths and principal points (4,) or (N, 4), in pixels; None: the angle of
-                     view is that of `fov` or of the scene's camera
+    K                (3, 3) or (N, 3, 3), or focal lengths and principal points (4,) or (N, 4), in pixels, where the
+                     first pixel's centre is (0.5, 0.5), in OpenCV (0, 0); None: the angle of view is that of `fov` or of the scene's
+                     camera
     convention       "opengl" (y up, looks along -z; default), "opencv" or "blender"
     intrinsics_size  the size for which K holds; None: that of the pictures
     lens, distortion as the settings: one lens for all

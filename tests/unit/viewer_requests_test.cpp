@@ -60,7 +60,7 @@ TEST_CASE(
     CHECK(given_token("") == "0123456789abcdef");
     CHECK(given_token(file) == "ABCdef-_0123456789");
     ::setenv("PERTEV_TOKEN", "short", 1);
-    CHECK(is_about(thrown_error([] { given_token(""); }), ErrorCode::BadInput, "PERTEV_TOKEN"));
+    CHECK(is_about(thrown_error([] { given_token(""); }), ErrorCode::BadInput, "token_file"));
     ::unsetenv("PERTEV_TOKEN");
     CHECK(thrown_error([] { given_token("/nowhere/token"); }).has_value());
 }

@@ -68,7 +68,7 @@ uint32_t append_copy(Mesh& mesh, uint32_t vertex, std::size_t except) {
 /// vertices of their own, so that they do not have the whole picture. Returns whether triangles are large: coordinates
 /// are linear across them.
 bool add_set(Mesh& mesh, const TextureMapping& by, const DoubleTransform& world_from_mesh, std::size_t set) {
-    constexpr double kLargeSpan = 1.0 / 16; // of a turn
+    constexpr double kLargeSpan = 1.0 / 16; // turns
     bool has_large = false;
     std::vector<Coordinates> at;
     for (const Vec3& position : mesh.positions)
