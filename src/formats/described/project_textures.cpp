@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -142,6 +143,27 @@ struct WithoutMappings {
     }
 };
 
+/// Returns the mesh with sets of coordinates by these mappings, from 1 on, or nothing if it takes more than `left`
+/// bytes.
+std::optional<ShapeMesh> with_sets(const ShapeMesh& from, const Mappings& sets, const DoubleTransform& world_from_mesh,
+                                   uint64_t& left, Sink& sink) {
+    // Every corner may get a vertex of its own for each set.
+    constexpr uint64_t kVertexBytes = 3 * sizeof(Vec4) + kTextureSets * sizeof(Vec2) + sizeof(uint32_t);
+    const uint64_t vertices = from.mesh.positions.size() + sets.size() * from.mesh.indices.size(),
+                   bytes = sizeof(ShapeMesh) + kVertexBytes * vertices;
+    if (bytes > left) {
+        sink.leave_out({from.location, "the mapping of a texture is left out; uv is used"});
+        return std::nullopt;
+    }
+    left -= bytes;
+    ShapeMesh made = from;
+    bool has_large = false;
+    for (std::size_t k = 0; k < sets.size(); ++k)
+        has_large = add_set(made.mesh, *sets[k], world_from_mesh, k + 1) || has_large;
+    if (has_large) sink.warn({from.location, "the mapping of a texture is linear across large triangles"});
+    return made;
+}
+
 } // namespace
 
 Mappings number_mappings(Surface& surface) {
@@ -185,21 +207,9 @@ void project_textures(Parts& parts, uint64_t file_bytes, Sink& sink) {
             };
             if (std::ranges::any_of(surface.images, is_left_out))
                 sink.leave_out({from.location, "a fourth mapping of one material is left out; uv is used"});
-            // Every corner may get a vertex of its own for each set.
-            constexpr uint64_t kVertexBytes = 3 * sizeof(Vec4) + kTextureSets * sizeof(Vec2) + sizeof(uint32_t);
-            const uint64_t vertices = from.mesh.positions.size() + sets.size() * from.mesh.indices.size(),
-                           bytes = sizeof(ShapeMesh) + kVertexBytes * vertices;
-            if (bytes > left) {
-                sink.leave_out({from.location, "the mapping of a texture is left out; uv is used"});
-            } else {
-                left -= bytes;
-                ShapeMesh made = from;
-                bool has_large = false;
-                for (std::size_t k = 0; k < sets.size(); ++k)
-                    has_large = add_set(made.mesh, *sets[k], m, k + 1) || has_large;
-                if (has_large) sink.warn({from.location, "the mapping of a texture is linear across large triangles"});
+            if (std::optional<ShapeMesh> made = with_sets(from, sets, m, left, sink)) {
                 copy->second = static_cast<uint32_t>(parts.meshes.size());
-                parts.meshes.push_back(std::move(made));
+                parts.meshes.push_back(*std::move(made));
             }
         }
         if (copy->second == shape.mesh) {
