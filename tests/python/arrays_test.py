@@ -11,6 +11,7 @@ import numpy
 import pertev
 
 from device_argument import DEVICE
+from other_python import needs
 
 sys.argv.pop(1)
 SMALL = {"size": (24, 16), "spp": 2, "device": DEVICE}
@@ -90,11 +91,9 @@ class Arrays(unittest.TestCase):
         self.assertEqual(pertev.render(pertev.Scene(**parts(meshes={"floor": mesh})), **SMALL).hash, expected.hash)
         self.assertTrue(numpy.shares_memory(numpy.from_dlpack(expected.color), expected.color))
 
+    @needs("torch")
     def test_torch_tensors_are_read(self):
-        try:
-            import torch
-        except ImportError:
-            self.skipTest("torch is not installed")
+        import torch
         expected = pertev.render(pertev.Scene(**parts()), **SMALL)
         mesh = {"vertices": torch.from_numpy(VERTICES), "faces": torch.from_numpy(FACES), "uv": torch.from_numpy(UV)}
         self.assertEqual(pertev.render(pertev.Scene(**parts(meshes={"floor": mesh})), **SMALL).hash, expected.hash)

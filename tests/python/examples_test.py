@@ -15,6 +15,8 @@ import numpy
 
 import pertev
 
+from other_python import needs, python_with
+
 PROGRAM = os.path.abspath(sys.argv.pop(1)) if len(sys.argv) > 1 else ""
 EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples"
 sys.path.insert(0, str(EXAMPLES))
@@ -105,9 +107,7 @@ class DataSet(Example):
         self.assertEqual(len({picture.tobytes() for picture in pictures}), 3)
 
     def test_pycocotools_reads_it(self):
-        pythons = [sys.executable, EXAMPLES.parent / "build" / "test-tools" / "bin" / "python"]  # .ci/run makes the latter
-        python = next((one for one in pythons if os.path.exists(one) and subprocess.run([one, "-c", "import pycocotools"], check=False,
-                                                                                        stderr=subprocess.DEVNULL).returncode == 0), None)
+        python = python_with("pycocotools")
         if python is None:
             self.skipTest("pycocotools is not installed")
         read = subprocess.run([python, "-c", READ_COCO, self.folder / "annotations.json"], check=True, capture_output=True, text=True)
@@ -120,11 +120,9 @@ class DataSet(Example):
 
 
 class DataLoader(Example):
+    @needs("torch")
     def test_workers_give_the_batches_of_this_process_and_the_network_learns(self):
-        try:
-            import torch
-        except ImportError:
-            self.skipTest("torch is not installed")
+        import torch
         example = importlib.import_module("data_loader")
         views = example.Views(pertev.load("cornell-box", device="cpu"), 2, 3, (16, 12), 1, device="cpu")
         environment = {"PYTHONPATH": os.pathsep.join(sys.path)}
