@@ -250,8 +250,7 @@ pertev_launches(integrators/irradiance_cache/cache_stages.cu
 # For lights that are selected by a tree.
 pertev_launches(integrators/irradiance_cache/cache_tree_stages.cu
   integrators/irradiance_cache/cache_stages.h
-  STAGES "ShadeCacheSubpaths<ShadingVariant::General, ChosenByTree>"
-    "ShadeCacheSubpaths<ShadingVariant::Unstacked, ChosenByTree>")
+  STAGES "ShadeCacheSubpaths<ShadingVariant::General, ChosenByTree>")
 pertev_launches(integrators/light/shade_seen.cu
   integrators/light/shade_seen.h
   STAGES "ShadeSeen<ShadingVariant::General>"
@@ -316,7 +315,7 @@ pertev_launches(integrators/photon_map/photon_stages.cu
   integrators/photon_map/gather_stages.h integrators/photon_map/order_photons.h integrators/photon_map/photon_stages.h
   integrators/photon_map/photon_targets.h
   STAGES FindSpecular
-    "BeginPhotons<false>"
+    BeginPhotons
     NumberPhotons
     OrderPhotons
     MakeBuckets
@@ -332,14 +331,12 @@ pertev_launches(integrators/photon_map/photon_stages.cu
 # For media.
 pertev_launches(integrators/photon_map/photon_media_stages.cu
   integrators/photon_map/gather_stages.h integrators/photon_map/photon_stages.h
-  STAGES "BeginPhotons<true>"
-    "ShadePhotons<ShadingVariant::General, true>"
+  STAGES "ShadePhotons<ShadingVariant::General, true>"
     "ShadeGather<ShadingVariant::General, true>")
 # For lights that are selected by a tree.
 pertev_launches(integrators/photon_map/photon_tree_stages.cu
   integrators/photon_map/gather_stages.h
   STAGES "ShadeGather<ShadingVariant::General, false, ChosenByTree>"
-    "ShadeGather<ShadingVariant::Unstacked, false, ChosenByTree>"
     "ShadeGather<ShadingVariant::General, true, ChosenByTree>")
 pertev_launches(integrators/radiosity/shade_radiosity.cu
   integrators/radiosity/radiosity.h integrators/ray_tree/tree_stages.h
@@ -369,7 +366,7 @@ pertev_launches(integrators/reyes/split_stages.cu
     "InWindow<ShadeSamples>")
 pertev_launches(integrators/subpaths/particle_stages.cu
   integrators/subpaths/particle_stages.h
-  STAGES "BeginParticles<false>"
+  STAGES BeginParticles
     BeginCameraSubpaths
     AddSplats
     AddConnections
@@ -381,15 +378,12 @@ pertev_launches(integrators/subpaths/particle_stages.cu
 # For media.
 pertev_launches(integrators/subpaths/particle_media_stages.cu
   integrators/light/shade_seen.h
-  STAGES "BeginParticles<true>"
-    "ShadeParticles<ShadingVariant::General, true>"
+  STAGES "ShadeParticles<ShadingVariant::General, true>"
     "ShadeSeen<ShadingVariant::General, true>")
 # For bidirectional's lights that are selected by a tree.
 pertev_launches(integrators/subpaths/particle_tree_stages.cu
   integrators/subpaths/particle_stages.h
-  STAGES "BeginParticles<false, true>"
-    "BeginParticles<true, true>"
-    "ShadeParticles<ShadingVariant::General, false, ChosenByTree>"
+  STAGES "ShadeParticles<ShadingVariant::General, false, ChosenByTree>"
     "ShadeParticles<ShadingVariant::Unstacked, false, ChosenByTree>"
     "ShadeParticles<ShadingVariant::General, true, ChosenByTree>")
 pertev_launches(integrators/whitted/shade_whitted.cu

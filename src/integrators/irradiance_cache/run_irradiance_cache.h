@@ -51,7 +51,7 @@ void run_cache_rounds(Schedule& schedule, const CacheJob& job) {
         schedule.find_hits(round == 0 && !kIsHemisphere ? RayKind::Camera : RayKind::Bounce, job, rays, round);
         if (kIsHemisphere && round == 0)
             schedule.run("store_distances", rays, StoreDistances{subpaths, job.cache, first});
-        with_choice(job.scene, [&]<ShadingVariant kVariant, class Choice>() {
+        with_choice<true>(job.scene, [&]<ShadingVariant kVariant, class Choice>() {
             if (kSubpaths == CacheSubpaths::Picture && job.shows_records) {
                 schedule.run(
                     "draw_records", rays,

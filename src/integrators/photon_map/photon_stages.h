@@ -52,8 +52,7 @@ struct PhotonPass {
     }
 };
 
-/// The stage that starts photons `first`, first + 1, ... as subpaths 0, 1, ...; with kInMedia in a scene with media.
-template <bool kInMedia = false>
+/// The stage that starts photons `first`, first + 1, ... as subpaths 0, 1, ...
 struct BeginPhotons {
     SubpathScene scene;
     SubpathsView subpaths;
@@ -74,7 +73,8 @@ struct BeginPhotons {
                 ? aim_particle(scene.picture.scene, pass.targets, scene.world, bits, direction, coin, particle)
                 : emit_particle(scene.picture.scene, scene.world, bits, direction, coin, particle);
         if (!leaves) return;
-        if constexpr (kInMedia) begin_in_media(scene.picture.scene, subpaths, i, particle);
+        const bool has_media = scene.picture.scene.has_media != 0;
+        if (has_media) begin_in_media(scene.picture.scene, subpaths, i, particle);
         SubpathState state = {};
         state.throughput = (1.0f / static_cast<float>(pass.count)) * particle.power;
         if (!(max_component(state.throughput) > 0)) return;
@@ -84,7 +84,7 @@ struct BeginPhotons {
         }
         state.pixel = path;
         subpaths.states[i] = state;
-        gather.marks[i] = kInMedia && pass.is_caustic(path) && particle.is_punctual ? kOfLightWithoutSize : 0;
+        gather.marks[i] = has_media && pass.is_caustic(path) && particle.is_punctual ? kOfLightWithoutSize : 0;
         gather.store_index(i, 1);
         pass.add_energy(&PhotonEnergy::emitted, state.throughput);
         subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), i, particle.ray, particle.start, coin, 0);

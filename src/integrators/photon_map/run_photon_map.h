@@ -32,12 +32,8 @@ void run_photons(Schedule& schedule, const PhotonJob& job) {
     const SubpathsView& subpaths = job.subpaths;
     schedule.run("begin_subpaths", 1, BeginSubpaths{subpaths.counts, 0});
     const SceneView& scene = job.scene.picture.scene;
-    const auto begin = [&]<bool kInMedia>() {
-        const auto first = static_cast<uint32_t>(job.first);
-        schedule.run("begin_photons", job.count,
-                     BeginPhotons<kInMedia>{job.scene, subpaths, job.gather, job.pass, first});
-    };
-    scene.has_media != 0 ? begin.template operator()<true>() : begin.template operator()<false>();
+    schedule.run("begin_photons", job.count,
+                 BeginPhotons{job.scene, subpaths, job.gather, job.pass, static_cast<uint32_t>(job.first)});
     schedule.run("count_subpaths", 1, CountSubpaths{subpaths.counts, true, 0});
     schedule.begin_rounds(job.count);
     for (uint32_t round = 0; round < job.scene.settings.max_depth && schedule.has_rays_left(subpaths.counts); ++round) {
@@ -87,7 +83,7 @@ void run_gather(Schedule& schedule, const PhotonJob& job) {
         const WorkCount connections = {schedule.max_rays(), &subpaths.counts->connections};
         const WorkCount lookups = {schedule.max_rays(), &subpaths.counts->vertices};
         schedule.find_hits(round == 0 ? RayKind::Camera : RayKind::Bounce, job, rays, round);
-        with_media_and_choice(job.scene, [&]<ShadingVariant kVariant, bool kInMedia, class Choice>() {
+        with_media_and_choice<true>(job.scene, [&]<ShadingVariant kVariant, bool kInMedia, class Choice>() {
             ShadeGather<kVariant, kInMedia, Choice> shade = {{},       job.scene, subpaths, job.gather,
                                                              job.film, job.how,   job.near, round};
             if constexpr (kInMedia) shade.in_media = job.in_media;

@@ -86,9 +86,7 @@ HD inline SampleKey particle_sample_key(const SubpathScene& scene, uint32_t pixe
     return {static_cast<uint32_t>(number >> 32), static_cast<uint32_t>(number), scene.settings.seed};
 }
 
-/// The stage that starts the particles of samples `first`, first + 1, ... of `samples` as subpaths 0, 1, ...; with
-/// kInMedia in a scene with media. With kKeepsLights, each subpath knows its light.
-template <bool kInMedia = false, bool kKeepsLights = false>
+/// The stage that starts the particles of samples `first`, first + 1, ... of `samples` as subpaths 0, 1, ...
 struct BeginParticles {
     SubpathScene scene;
     SubpathsView subpaths;
@@ -105,14 +103,14 @@ struct BeginParticles {
         const uint32_t coin = coin_key({state.pixel, state.sample, settings.seed ^ kParticleCoins}, 0, false);
         Particle particle;
         if (!emit_particle(scene.picture.scene, scene.world, bits, direction, coin, particle)) return;
-        if constexpr (kInMedia) begin_in_media(scene.picture.scene, subpaths, i, particle);
+        if (scene.picture.scene.has_media != 0) begin_in_media(scene.picture.scene, subpaths, i, particle);
         if (!(max_component(particle.power) > 0)) return;
         state.throughput = particle.power;
         state.mis = particle.mis;
         state.is_from_far = particle.is_from_far ? 1 : 0;
         subpaths.states[i] = state;
         subpaths.squared_indices[i] = 1;
-        if constexpr (kKeepsLights) subpaths.lights[i] = particle.light;
+        if (subpaths.lights != nullptr) subpaths.lights[i] = particle.light;
         subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), i, particle.ray, particle.start, coin, 0);
     }
 };

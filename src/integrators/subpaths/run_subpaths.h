@@ -113,11 +113,13 @@ void with_media(const SceneView& scene, const Run& run) {
 }
 
 /// Calls run.operator()<kVariant, Choice>() with the materials' variant and the class that selects lights
-/// (shading/light_set.h). The light tree has kernels for surfaces with lobes alone.
-template <class Run>
+/// (shading/light_set.h). The light tree has kernels for surfaces with lobes alone, and with kHasOneByTree one for all,
+/// because a kernel is a megabyte of machine code.
+template <bool kHasOneByTree = false, class Run>
 void with_choice(const SubpathScene& scene, const Run& run) {
     const ShadingVariant variant = scene.picture.scene.variant;
     if (uses_light_tree(scene)) {
+        if constexpr (kHasOneByTree) return run.template operator()<ShadingVariant::General, ChosenByTree>();
         with_stacks(variant, [&]<ShadingVariant kVariant>() { run.template operator()<kVariant, ChosenByTree>(); });
     } else {
         with_plain_diffuse(variant,
@@ -126,10 +128,10 @@ void with_choice(const SubpathScene& scene, const Run& run) {
 }
 
 /// Calls run.operator()<kVariant, kInMedia, Choice>() for a scene of either kind, as with_choice does.
-template <class Run>
+template <bool kHasOneByTree = false, class Run>
 void with_media_and_choice(const SubpathScene& scene, const Run& run) {
     if (scene.picture.scene.has_media == 0) {
-        return with_choice(scene, [&]<ShadingVariant kVariant, class Choice>() {
+        return with_choice<kHasOneByTree>(scene, [&]<ShadingVariant kVariant, class Choice>() {
             run.template operator()<kVariant, false, Choice>();
         });
     }
@@ -144,19 +146,7 @@ void run_particles(Schedule& schedule, const SubpathJob& job) {
     const SubpathsView& subpaths = job.subpaths;
     schedule.run("begin_subpaths", 1, BeginSubpaths{subpaths.counts, 0});
     const SceneView& scene = job.scene.picture.scene;
-    const auto begin = [&]<bool kInMedia, bool kKeepsLights>() {
-        schedule.run("begin_particles", job.count,
-                     BeginParticles<kInMedia, kKeepsLights>{job.scene, subpaths, job.samples, job.first});
-    };
-    const auto begin_as = [&]<bool kKeepsLights>() {
-        scene.has_media != 0 ? begin.template operator()<true, kKeepsLights>()
-                             : begin.template operator()<false, kKeepsLights>();
-    };
-    if constexpr (kIsConnected) {
-        uses_light_tree(job.scene) ? begin_as.template operator()<true>() : begin_as.template operator()<false>();
-    } else {
-        begin_as.template operator()<false>();
-    }
+    schedule.run("begin_particles", job.count, BeginParticles{job.scene, subpaths, job.samples, job.first});
     schedule.run("count_subpaths", 1, CountSubpaths{subpaths.counts, true, 0});
     schedule.begin_rounds(job.count);
     for (uint32_t round = 0; round < job.scene.settings.max_depth && schedule.has_rays_left(subpaths.counts); ++round) {
