@@ -8,7 +8,9 @@ with 77; it runs nothing of the files.
     tools/check_packaging.py --self-test
 """
 
+import functools
 import importlib.util
+import os
 import pathlib
 import re
 import shutil
@@ -62,9 +64,17 @@ def faults_of_unit(text):
     return [line for line in done.stdout.splitlines() if "checked@" in line]
 
 
+@functools.cache
 def linter(name):
-    """Returns the linter's program, or None: the system's, or the one of build/test-tools."""
-    return shutil.which(name) or shutil.which(name, path=ROOT / "build/test-tools/bin")
+    """Returns the linter's program, or None: the system's, or the one of build/test-tools. One that does not start, such as a script whose
+    Python is gone, is none."""
+    for program in filter(None, (shutil.which(name, path=path) for path in (None, ROOT / "build/test-tools/bin"))):
+        try:
+            subprocess.run([program, "--version"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True)
+            return program
+        except (OSError, subprocess.CalledProcessError):
+            continue
+    return None
 
 
 def faults_by_linter(name, file):
@@ -93,6 +103,12 @@ def self_test():
             path = pathlib.Path(folder, file)
             path.write_text(bad, encoding="utf-8")
             assert linter(name) is None or faults_by_linter(name, path), bad
+        script = pathlib.Path(folder, "no-linter")
+        script.write_text("#!/no/python\n", encoding="utf-8")
+        script.chmod(0o755)
+        path, os.environ["PATH"] = os.environ["PATH"], folder
+        assert linter(script.name) is None, "its Python is gone"
+        os.environ["PATH"] = path
     missing = missing_tools()
     for bad in [workflow.replace(".ci/run", ".ci/rum"), workflow.replace("- uses:", "- use:"), "a: [", "", workflow.replace("jobs:", "job:")]:
         assert "PyYAML" in missing or faults_of_workflow(bad), bad
