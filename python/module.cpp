@@ -340,6 +340,20 @@ cameras_of_file(const std::string& path, uint32_t width, uint32_t height) {
     return cameras;
 }
 
+/// Returns the folder of the package pyoidn that `import pyoidn` would find now; empty if there is none.
+std::string folder_of_pyoidn() {
+    const nb::gil_scoped_acquire lock;
+    try {
+        const nb::object found = nb::module_::import_("importlib.util").attr("find_spec")("pyoidn");
+        if (found.is_none() || found.attr("submodule_search_locations").is_none()) return "";
+        const nb::object folder = found.attr("submodule_search_locations").attr("__getitem__")(0);
+        return nb::cast<nb::bytes>(nb::module_::import_("os").attr("fsencode")(folder)).c_str();
+    } catch (nb::python_error& error) { // a finder of the caller's failed, or the package is no folder
+        if (error.matches(PyExc_KeyboardInterrupt)) PyErr_SetInterrupt(); // the render hears of it
+        return "";
+    }
+}
+
 /// Raises the package's exception for the error's code, with its parts as attributes.
 void raise(const Error& error) {
     const FileLocation where = error.location().value_or(FileLocation{});
@@ -370,8 +384,7 @@ NB_MODULE(_core, module) {
     });
     nb::set_leak_warnings(false); // a thread may still render when the interpreter ends
     module.attr("__version__") = version();
-    const nb::object prefix = nb::module_::import_("os").attr("fsencode")(nb::module_::import_("sys").attr("prefix"));
-    OidnLibrary::look_below(nb::cast<nb::bytes>(prefix).c_str());
+    OidnLibrary::look_in(&folder_of_pyoidn);
     define_result(module);
     define_batch(module);
     module.def(

@@ -26,11 +26,28 @@ def hash_of(scene):
     return pertev.render(scene, **SMALL).hash
 
 
-def run_python(text):
-    return subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, timeout=60)
+def run_python(text, environment=None):
+    return subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, timeout=60, env=environment)
 
 
 class Processes(unittest.TestCase):
+    def test_pyoidn_is_found_where_python_finds_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            library = pathlib.Path(folder, "pyoidn/oidn/lib/libOpenImageDenoise.so.2")
+            library.parent.mkdir(parents=True)
+            library.write_text("no library")
+            pathlib.Path(folder, "pyoidn/__init__.py").write_text("raise AssertionError('it was imported')")
+            render = "try:\n    pertev.render('cornell-box', size=(4, 4), spp=1, device='cpu', denoise='oidn')\nexcept pertev.InputError as error:\n    print(error)\n"
+            for code, path in ((f"import pertev\n{render}", folder), (f"import pertev, sys\nsys.path.append({folder!r})\n{render}", "")):
+                environment = {**os.environ, "PYTHONPATH": os.pathsep.join([os.environ.get("PYTHONPATH", ""), path])}
+                environment.pop("PERTEV_OIDN", None)
+                done = run_python(code, environment)
+                if done.stdout: # no other library is there
+                    self.assertIn("pip install pyoidn", done.stdout)
+                    self.assertIn(str(library), done.stdout)
+                else:
+                    self.assertEqual((done.returncode, done.stderr), (0, ""))
+
     def test_a_fork_before_any_work_renders(self):
         done = run_python("import os, pertev\nif os.fork() == 0:\n"
                           "    print(pertev.render('cornell-box', size=(4, 4), spp=1, device='cpu').hash)\n"

@@ -26,6 +26,13 @@ std::string environment(const char* name) {
     return value != nullptr ? value : "";
 }
 
+/// Adds the library in a folder of the package pyoidn, if it is there.
+void add_library(const fs::path& pyoidn, std::vector<std::string>& files) {
+    std::error_code fault;
+    const fs::path file = pyoidn / "oidn/lib" / kFile;
+    if (fs::exists(file, fault)) files.push_back(file.string());
+}
+
 /// Adds the library in the packages of each Python below `prefix`, the newest first.
 void add_packages(const fs::path& prefix, std::vector<std::string>& files) {
     std::vector<std::string> found;
@@ -33,9 +40,7 @@ void add_packages(const fs::path& prefix, std::vector<std::string>& files) {
     for (fs::directory_iterator at(prefix / "lib", fault), end; !fault && at != end; at.increment(fault)) {
         if (!at->path().filename().string().starts_with("python3")) continue;
         for (const char* const packages : {"site-packages", "dist-packages"}) {
-            std::error_code none;
-            const fs::path file = at->path() / packages / "pyoidn/oidn/lib" / kFile;
-            if (fs::exists(file, none)) found.push_back(file.string());
+            add_library(at->path() / packages / "pyoidn", found);
         }
     }
     std::ranges::sort(found, std::greater<>());
@@ -67,10 +72,7 @@ fs::path prefix_of_python() {
     return {};
 }
 
-fs::path& prefix_of_interpreter() {
-    static fs::path prefix;
-    return prefix;
-}
+std::string (*folder_by_interpreter)() = nullptr;
 
 /// Returns the files to try, in order. A name without a folder is for the system's loader.
 std::vector<std::string> files_to_try(const std::string& given) {
@@ -81,15 +83,14 @@ std::vector<std::string> files_to_try(const std::string& given) {
         return {fs::exists(below, fault) ? below.string() : (fs::path(given) / kFile).string()};
     }
     std::vector<std::string> files = {kFile};
+    if (folder_by_interpreter != nullptr) add_library(folder_by_interpreter(), files);
     for (fs::path folder = own_file().parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
-        std::error_code fault;
-        const fs::path beside = folder / "pyoidn/oidn/lib" / kFile;
-        if (fs::exists(beside, fault)) files.push_back(beside.string());
+        add_library(folder / "pyoidn", files);
         add_packages(folder, files);
     }
     for (const fs::path& prefix :
-         {prefix_of_interpreter(), fs::path(environment("VIRTUAL_ENV")), prefix_of_python(),
-          fs::path(environment("HOME")) / ".local", fs::path("/usr/local"), fs::path("/usr")}) {
+         {fs::path(environment("VIRTUAL_ENV")), prefix_of_python(), fs::path(environment("HOME")) / ".local",
+          fs::path("/usr/local"), fs::path("/usr")}) {
         if (prefix.is_absolute()) add_packages(prefix, files);
     }
     return files;
@@ -140,7 +141,7 @@ std::string OidnLibrary::load(const std::string& file) {
     return why;
 }
 
-void OidnLibrary::look_below(const std::string& prefix) { prefix_of_interpreter() = prefix; }
+void OidnLibrary::look_in(std::string (*folder_of_pyoidn)()) { folder_by_interpreter = folder_of_pyoidn; }
 
 std::string OidnLibrary::version() const {
     return fmt::format("{}.{}.{}", version_ / 10000, version_ / 100 % 100, version_ % 100);

@@ -20,13 +20,14 @@ public:
     static constexpr int kOutOfMemory = 4;
 
     /// Returns the library that $PERTEV_OIDN names, a file or its folder; else that of the system's loader, or that of
-    /// the package pyoidn beside this program, below look_below(), in the environment of the first `python3` of $PATH,
-    /// or in the user's or the system's packages. Throws Error(BadInput) that names `setting` if no library fits. It is
-    /// never unloaded.
+    /// the package pyoidn where look_in() finds it, beside this program, in the environment of the first `python3` of
+    /// $PATH, or in the user's or the system's packages. Throws Error(BadInput) that names `setting` if no library
+    /// fits. It is never unloaded.
     static std::shared_ptr<const OidnLibrary> find(const char* setting);
 
-    /// Names the prefix of the environment of the Python interpreter that has loaded this code; before any find().
-    static void look_below(const std::string& prefix);
+    /// Sets what asks the Python interpreter that has loaded this code for the folder of its pyoidn, which is empty if
+    /// it has none; before any find(), which calls it on the finding thread.
+    static void look_in(std::string (*folder_of_pyoidn)());
 
     /// Returns the library's version, such as "2.5.1".
     std::string version() const;
