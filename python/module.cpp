@@ -308,7 +308,14 @@ void define_scene(nb::module_& module) {
         .def_prop_ro("name", &PythonScene::name, "The file, or the name of a built-in scene or of a scene of arrays")
         .def("__repr__", [](const PythonScene& scene) { return "<pertev.Scene " + scene.name() + ">"; });
     nb::class_<PythonSession>(module, "Session")
-        .def(nb::init<PythonScene&, SettingTexts>(), nb::keep_alive<1, 2>())
+        .def(
+            "__init__",
+            [](PythonSession* session, PythonScene& scene, SettingTexts settings) {
+                Messages unsaid; // the first frame reports them
+                scene.options_of({"", settings}, unsaid);
+                new (session) PythonSession(scene, std::move(settings));
+            },
+            nb::keep_alive<1, 2>())
         .def("_next",
              [](PythonSession& session) { return result_of([&](PythonSink& sink) { return session.next(sink); }); })
         .def("_set",

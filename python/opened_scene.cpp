@@ -69,6 +69,7 @@ void OpenedScene::open(PictureOptions& options, const EditedScene& source, Sink&
     in_memory.edit = [&](Scene& scene) { source.edit(scene); };
     auto made = prepare_render(options, kRender, sink, {}, in_memory);
     if (source.arrays) made->hash = source.hash_of_arrays;
+    session_.reset(); // it refers to the old setup
     parameters_.reset();
     setup_ = std::move(made);
     edits_ = source.edit_count;
@@ -78,12 +79,12 @@ void OpenedScene::prepare(PictureOptions& options, const EditedScene& source, Si
     const PictureOptions asked = options; // without what the scene's file suggests
     const bool is_open = setup_ && apply_edits(source, sink) && adapt_setup(*setup_, used_, options, kRender, sink);
     if (!is_open) {
-        session_.reset();
         try {
             open(options, source, sink);
         } catch (const Error& error) {
-            // Two scenes may not fit into memory. A wrong setting leaves the old one open.
+            // Two scenes may not fit into memory. A wrong setting leaves the old one open, with its session.
             if (error.code() != ErrorCode::OutOfMemory || !setup_) throw;
+            session_.reset();
             setup_.reset();
             options = asked;
             open(options, source, sink);

@@ -9,14 +9,26 @@ namespace pertev {
 
 void PythonSession::set(const SettingTexts& settings, Sink& sink) {
     const std::unique_lock turn = wait_for(turn_, sink);
+    SettingTexts changed = settings_;
     for (const auto& [name, texts] : settings) {
         if (texts.empty()) {
-            settings_.erase(name);
+            changed.erase(name);
         } else {
-            settings_[name] = texts;
+            changed[name] = texts;
         }
     }
+    PartMessages unsaid(sink); // the next frame reports them
+    scene_.options_of({"", changed}, unsaid);
+    std::swap(settings_, changed);
     record_.reset();
+    if (opened_.setup() == nullptr) return;
+    try {
+        prepare(sink);
+    } catch (...) {
+        std::swap(settings_, changed);
+        record_.reset();
+        throw;
+    }
 }
 
 void PythonSession::reset(Sink& sink) {

@@ -19,7 +19,8 @@ public:
 
     /// Renders the next frame; none after the last one. Throws Error, after which the frame is the next one still.
     std::optional<PythonResult> next(Sink& sink);
-    /// Changes settings of the frames to come. No texts: the setting counts as not given.
+    /// Changes settings of the frames to come. No texts: the setting counts as not given. Throws Error if a value is
+    /// wrong, once the scene is open also one that does not fit the scene; all settings stay as they were then.
     void set(const SettingTexts& settings, Sink& sink);
     /// Forgets earlier frames: the next one is the first.
     void reset(Sink& sink);

@@ -193,7 +193,8 @@ class Session(_core.Session):
         return frame
 
     def set(self, **values):
-        """Changes settings of the frames to come. None is as if the setting was not given.
+        """Changes settings of the frames to come. None is as if the setting was not given. Raises as render() for a wrong
+        value, and then changes nothing; before the first frame, what the scene lacks is only found by that.
 
         Settings of the camera keep the history of earlier frames. Those that change the scene, its trees or the device
         open the scene again, without a history."""

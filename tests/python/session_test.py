@@ -167,14 +167,30 @@ class Sessions(unittest.TestCase):
     def test_wrong_settings_are_refused(self):
         with self.assertRaises(TypeError):
             pertev.Session("cornell-box", fpss=3)
-        session = pertev.Session("cornell-box", **SMALL)
-        first = next(session).hash
-        session.set(spp=-1)
+        scene = pertev.load("cornell-box", device=DEVICE)
+        for setting, values in [("spp", {"spp": "deep"}), ("real_time", {"transparent": True}), ("layers", {"layers": "deepness"})]:
+            with self.assertRaises(pertev.InputError) as caught:
+                pertev.Session(scene, **SMALL, **values)
+            self.assertEqual(caught.exception.setting, setting)
+
+    def test_a_wrong_value_is_refused_when_it_is_set_and_changes_nothing(self):
+        expected = pertev.Session("cornell-box", **SMALL)
+        expected = [next(expected).hash for _ in range(2)]
+        for kind, setting, values in [(pertev.InputError, "spp", {"spp": -1, "eye": (0, 1, 3)}), (pertev.InputError, "real_time", {"transparent": True}), (pertev.InputError, "camera", {"camera": "none"}),
+                                      (pertev.InputError, "environment", {"environment": "none.exr"}), (pertev.InputError, "device", {"device": "tpu"}), (pertev.InputError, "frames", {"frames": "5-2"}),
+                                      (pertev.MissingFileError, "", {"camera_path": "none.json"}), (pertev.LimitError, "size", {"size": (10**6, 10**6)}), (TypeError, None, {"spp": b"1"})]:
+            with self.subTest(values):
+                session = pertev.Session("cornell-box", **SMALL)
+                frames = [next(session).hash]
+                with self.assertRaises(kind) as caught:
+                    session.set(**values)
+                self.assertEqual(getattr(caught.exception, "setting", None), setting)
+                frames.append(next(session).hash) # with the history of the first
+                self.assertEqual(frames, expected)
+        session = pertev.Session("cornell-box", **SMALL) # its scene is not open yet
         with self.assertRaises(pertev.InputError):
-            next(session)
-        session.set(spp=None)
-        session.reset()
-        self.assertEqual(next(session).hash, first)
+            session.set(spp=-1)
+        self.assertEqual([next(session).hash for _ in range(2)], expected)
 
 
 class Times(unittest.TestCase):
