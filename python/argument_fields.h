@@ -26,7 +26,8 @@ namespace pertev {
 }
 
 inline std::string text_argument(nanobind::handle value, const std::string& path) {
-    if (!nanobind::isinstance<nanobind::str>(value)) refuse_argument(path, "expected a text");
+    if (!nanobind::isinstance<nanobind::str>(value))
+        refuse_argument(path, fmt::format("expected a text, not {}", nanobind::type_name(value.type()).c_str()));
     Py_ssize_t size = 0;
     const char* const text = PyUnicode_AsUTF8AndSize(value.ptr(), &size);
     if (text == nullptr) {

@@ -53,6 +53,13 @@ uint32_t color_channels_of(const RenderSettings& settings) {
     return settings.samples == 0 ? 0 : settings.transparent ? 4 : 3;
 }
 
+std::string text_of_layers(uint32_t groups) {
+    std::vector<std::string> names;
+    for (const AovGroup& group : kAovTable)
+        if ((groups & group.bit) != 0) names.emplace_back(group.name);
+    return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+}
+
 /// Returns the bytes of the arrays of `count` pictures.
 std::size_t bytes_of_arrays(const RenderSettings& settings, uint32_t count, bool on_cuda) {
     Queue queue = Queue::make_dry_run(on_cuda);
@@ -125,13 +132,27 @@ uint32_t size_of_chunk(OpenedScene& opened, const RenderSettings& settings, cons
                             setup.queue->is_cuda());
 }
 
-bool PythonBatch::fits(const RenderSettings& settings, const CamerasArgument& cameras, const Queue& queue) const {
+/// Returns why pictures of a call cannot fill the arrays; empty if they can.
+std::string PythonBatch::misfit(const RenderSettings& settings, const CamerasArgument& cameras,
+                                const Queue& queue) const {
     uint32_t groups = 0;
     for (const BatchArrays::Layer& layer : arrays_.layers) groups |= layer.group;
     if (arrays_.ids.size() > 0) groups |= kAovIds;
-    return &queue == queue_.get() && settings.width == width_ && settings.height == height_ &&
-           cameras.count() == arrays_.pictures && cameras.is_single == is_single_ && groups == settings.aovs &&
-           color_channels_of(settings) == color_channels_;
+    const uint32_t channels = color_channels_of(settings);
+    if (&queue != queue_.get()) return "the arrays belong to another scene or device";
+    if (cameras.is_single != is_single_)
+        return is_single_ ? "the arrays are of one picture, without `cameras`" : "the arrays are of many `cameras`";
+    if (cameras.count() != arrays_.pictures)
+        return fmt::format("the arrays are of {} pictures; expected {}", arrays_.pictures, cameras.count());
+    if (settings.width != width_ || settings.height != height_) {
+        return fmt::format("the arrays are of pictures of {}x{}; expected {}x{}", width_, height_, settings.width,
+                           settings.height);
+    }
+    if (groups != settings.aovs)
+        return fmt::format("the layers are {}; expected {}", text_of_layers(groups), text_of_layers(settings.aovs));
+    if (channels != color_channels_)
+        return fmt::format("the color has {} channels; expected {}", color_channels_, channels);
+    return "";
 }
 
 void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArgument& cameras,
@@ -143,11 +164,11 @@ void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArg
     const auto count = static_cast<uint32_t>(cameras.count());
     const CameraBatch batch = batch_of(cameras, options, settings, setup.scene(), session.camera(), sink);
     check_batch(batch, settings);
-    if (!is_empty() && !fits(settings, cameras, queue)) {
-        throw Error(ErrorCode::BadInput, "out", "",
-                    "the arrays belong to other pictures: number, size, layers and scene must be the same");
+    if (!is_empty()) {
+        const std::string why = misfit(settings, cameras, queue);
+        if (!why.empty()) throw Error(ErrorCode::BadInput, "out", "", why);
+        wait_for_device(queue); // others may still read the arrays
     }
-    if (!is_empty()) wait_for_device(queue); // others may still read the arrays
     const uint32_t at_once = size_of_chunk(opened, settings, cameras, options);
     if (is_empty()) {
         const std::size_t bytes = predicted_batch_bytes(setup.prepared(), batch, settings, at_once, queue.is_cuda()) +

@@ -81,7 +81,7 @@ private:
     std::vector<std::byte> download(const Array& array, std::size_t first, std::size_t count) const;
     std::vector<PixelIds> ids_of(std::size_t picture) const;
     RenderStats stats() const;
-    bool fits(const RenderSettings& settings, const CamerasArgument& cameras, const Queue& queue) const;
+    std::string misfit(const RenderSettings& settings, const CamerasArgument& cameras, const Queue& queue) const;
 
     std::unique_ptr<std::timed_mutex> turn_ = std::make_unique<std::timed_mutex>(); // so that batches can be moved
     std::shared_ptr<Queue> queue_;                                                  // outlives the buffers

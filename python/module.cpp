@@ -201,7 +201,8 @@ nb::object render_batch(PythonScene& scene, const std::string& settings_file, co
     if (out.is_none()) out = nb::cast(PythonBatch());
     if (!nb::isinstance<PythonBatch>(out)) {
         throw Error(ErrorCode::BadInput, "out", "",
-                    "with `cameras` or `on_device` expected the BatchResult of an earlier call");
+                    fmt::format("with `cameras` or `on_device` expected the BatchResult of an earlier call, not {}",
+                                nb::type_name(out.type()).c_str()));
     }
     PythonBatch& batch = nb::cast<PythonBatch&>(out);
     run_unlocked([&](PythonSink& sink) { scene.render_batch({settings_file, settings}, cameras, batch, sink); });

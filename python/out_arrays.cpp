@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <optional>
 
 #include <nanobind/ndarray.h>
@@ -34,6 +35,46 @@ std::optional<std::size_t> channels_of(const std::string& name, const RenderSett
     const std::vector<std::string> light = light_layers_of(settings);
     if (std::ranges::find(light, name) == light.end()) return std::nullopt;
     return 3;
+}
+
+/// Returns the names of all arrays that a picture of these settings has.
+std::vector<std::string> array_names_of(const RenderSettings& settings) {
+    std::vector<std::string> names = {"color", "noisy"};
+    for (const AovGroup& group : kAovTable)
+        if ((settings.aovs & group.bit) != 0) names.emplace_back(group.bit == kAovIds ? group.name : group.layer);
+    std::ranges::move(light_layers_of(settings), std::back_inserter(names));
+    return names;
+}
+
+std::string dtype_name(nb::dlpack::dtype type) {
+    using DtypeCode = nb::dlpack::dtype_code;
+    const auto code = static_cast<DtypeCode>(type.code);
+    if (code == DtypeCode::Bool) return "bool";
+    const char* const kind = code == DtypeCode::Int       ? "int"
+                             : code == DtypeCode::UInt    ? "uint"
+                             : code == DtypeCode::Float   ? "float"
+                             : code == DtypeCode::Bfloat  ? "bfloat"
+                             : code == DtypeCode::Complex ? "complex"
+                                                          : "another type of ";
+    return fmt::format("{}{}", kind, type.bits);
+}
+
+/// Returns why an array that is no writable one of the host in the order of C cannot be filled.
+std::string fault_of_array(nb::handle value) {
+    nb::ndarray<nb::ro> array;
+    if (!nb::try_cast(value, array, false)) {
+        const nb::object dtype = nb::getattr(value, "dtype", nb::none());
+        return fmt::format("{}{} is not an array with DLPack or the buffer protocol",
+                           nb::type_name(value.type()).c_str(),
+                           dtype.is_none() ? "" : fmt::format(" of {}", nb::str(dtype).c_str()));
+    }
+    if (array.device_type() == nb::device::cuda::value)
+        return fmt::format("the array is on cuda:{}; expected one in the CPU's memory", array.device_id());
+    if (array.device_type() != nb::device::cpu::value)
+        return "the array is on another device; expected one in the CPU's memory";
+    nb::ndarray<nb::device::cpu> writable;
+    if (!nb::try_cast(value, writable, false)) return "the array is read-only; expected one that can be written";
+    return "the array is not C-contiguous; expected rows one after the other, without gaps";
 }
 
 std::size_t bytes_of(const OutArray& array) {
@@ -76,12 +117,17 @@ std::vector<OutArray> out_arrays(const nb::dict& out) {
         made.name = text_argument(key, "out");
         made.array = nb::borrow(value);
         nb::ndarray<nb::c_contig, nb::device::cpu> array;
-        if (!nb::try_cast(value, array, false)) continue;
-        if (reinterpret_cast<std::uintptr_t>(array.data()) % alignof(float) != 0) continue;
+        if (!nb::try_cast(value, array, false)) {
+            made.fault = fault_of_array(value);
+            continue;
+        }
+        if (reinterpret_cast<std::uintptr_t>(array.data()) % alignof(float) != 0) {
+            made.fault = "the array's address is not a multiple of 4";
+            continue;
+        }
         made.memory = static_cast<std::byte*>(array.data());
         for (std::size_t axis = 0; axis < array.ndim(); ++axis) made.shape.push_back(array.shape(axis));
-        made.is_float = array.dtype() == nb::dtype<float>();
-        made.is_uint = array.dtype() == nb::dtype<uint32_t>();
+        made.dtype = dtype_name(array.dtype());
     }
     return arrays;
 }
@@ -94,17 +140,22 @@ const OutArray* find_array(std::span<const OutArray> arrays, std::string_view na
 void check_arrays(std::span<const OutArray> arrays, const RenderSettings& settings) {
     for (const OutArray& array : arrays) {
         const std::optional<std::size_t> channels = channels_of(array.name, settings);
-        if (!channels) throw Error(ErrorCode::BadInput, "out", array.name, "the picture has no such array");
+        if (!channels) {
+            throw Error(ErrorCode::BadInput, "out", array.name,
+                        fmt::format("the picture has no such array; with these settings it has {}",
+                                    fmt::join(array_names_of(settings), ", ")));
+        }
         const std::size_t shape[] = {settings.window().height, settings.window().width, *channels};
         const std::span expected(shape, *channels > 1 ? 3 : 2);
-        const bool is_ids = array.name == "ids";
-        if (array.memory != nullptr && (is_ids ? array.is_uint : array.is_float) &&
-            std::ranges::equal(array.shape, expected)) {
-            continue;
+        const char* const dtype = array.name == "ids" ? "uint32" : "float32";
+        std::string fault = array.fault;
+        if (fault.empty() && array.dtype != dtype) {
+            fault = fmt::format("the array's dtype is {}; expected {}", array.dtype, dtype);
+        } else if (fault.empty() && !std::ranges::equal(array.shape, expected)) {
+            fault = fmt::format("the array's shape is ({}); expected ({})", fmt::join(array.shape, ", "),
+                                fmt::join(expected, ", "));
         }
-        throw Error(ErrorCode::BadInput, "out", array.name,
-                    fmt::format("expected a C-contiguous array of {} with shape ({}) in the CPU's memory",
-                                is_ids ? "uint32" : "float32", fmt::join(expected, ", ")));
+        if (!fault.empty()) throw Error(ErrorCode::BadInput, "out", array.name, fault);
     }
 }
 

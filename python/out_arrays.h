@@ -16,9 +16,10 @@ namespace pertev {
 struct OutArray {
     std::string name; // that of a Result's attribute
     nanobind::object array;
-    std::byte* memory = nullptr; // null: it is not in the host's memory, cannot be written, or not in the order of C
+    std::byte* memory = nullptr; // null: it cannot be filled
+    std::string fault;           // why not
     std::vector<std::size_t> shape;
-    bool is_float = false, is_uint = false; // float32, uint32
+    std::string dtype; // the name in NumPy, float32
 };
 
 /// Returns the arrays of a dictionary.

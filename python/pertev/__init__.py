@@ -8,6 +8,7 @@
 """
 
 import importlib
+from collections.abc import Mapping
 
 from ._cameras import BatchResult, Cameras, DeviceArray, cameras_of, chunk_size, read_cameras, render_batch, seeds_of
 from ._core import Result, __version__, builtin_scenes
@@ -37,10 +38,12 @@ def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(),
 
     scene     what load() returns, or as its `scene`
     cameras   Cameras, an array of poses (N, 4, 4), or a file of read_cameras(): all pictures are one job if they are not denoised,
-              and the call returns a BatchResult
+              and the call returns a BatchResult. It excludes settings that place one camera: camera, eye, camera_pose ...
     seeds     of these pictures: one for all or (N,); None: that of the setting
     color     False with layers_at="centre" and many cameras or `on_device`: only layers are made
-    layers    names of layers to render as well: "albedo", "normal", "depth", "distance", "position", "ids", "motion"
+    layers    names of layers to render as well: "albedo", "normal", "depth", "distance", "position", "ids", "motion",
+              "uv", "crypto_object", "crypto_material", "samples", "variance"; of these not the last six
+              with `cameras` or `on_device`
     output    a file to write, or several: .exr .png .jpg .hdr
     settings  a file of settings, which `values` overrule
     out       arrays to fill, by the names of the Result's attributes: {"color": array}, which are then those of the
@@ -70,7 +73,7 @@ def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(),
         raise TypeError("seeds and color are for many `cameras`, or for `on_device`")
     if isinstance(out, BatchResult):
         raise TypeError("out: a BatchResult is for `cameras` or `on_device`; expected arrays, as {'color': array}")
-    out = out if out is None or isinstance(out, dict) else {"color": out}
+    out = out if out is None else dict(out) if isinstance(out, Mapping) else {"color": out}
     with of_layers(values):
         return used._render(_settings_file(settings), texts_of(with_layers(values, layers), OF_STILLS),
                             names_of(output, "output"), out)

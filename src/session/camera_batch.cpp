@@ -3,8 +3,11 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/error.h"
+#include "render/film_channels.h"
+#include "render/sample_layers/sample_layers.h"
 #include "session/check_integrator.h"
 #include "session/picture_renderer.h"
 
@@ -26,7 +29,12 @@ void check_batch(const CameraBatch& batch, const RenderSettings& settings) {
     refuse(settings.light_paths != nullptr, "lpe", "", "batches of pictures have no layers of light paths");
     refuse(settings.irradiance, "false_color", "illuminance", "batches of pictures show radiance");
     refuse((settings.aovs & kAovMotion) != 0, "aov", "motion", "pictures of a batch have no earlier frame");
-    refuse(settings.sample_layers != 0, "aov", "", "batches of pictures have none of uv, samples, variance, mattes");
+    if (settings.sample_layers != 0) {
+        std::vector<std::string> names = aov_names();
+        std::erase(names, "motion");
+        throw Error(ErrorCode::BadInput, "aov", sample_layer_names(settings.sample_layers).front(),
+                    fmt::format("batches of pictures have only {}", fmt::join(names, ", ")));
+    }
     refuse(settings.crop.has_value(), "crop", "", "batches of pictures are whole; crop their arrays");
     refuse(settings.time_limit_s > 0, "time_limit", "", "pictures of a batch would end at different samples");
     refuse(settings.samples == 0 && !has_centres(settings), "spp", "0",

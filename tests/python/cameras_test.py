@@ -12,6 +12,7 @@ import unittest
 
 import numpy
 import pertev
+from pertev import _settings
 
 from device_argument import DEVICE
 
@@ -185,16 +186,21 @@ class Cameras(unittest.TestCase):
         self.assertEqual(host(color).tobytes(), before)
 
     def test_out_fills_the_same_memory_again(self):
-        first = pertev.render(self.scene, cameras=poses(2), layers=LAYERS, **SMALL)
+        scene = pertev.load("cornell-box", device=DEVICE) # that of other tests is opened again for other settings
+        first = pertev.render(scene, cameras=poses(2), layers=LAYERS, **SMALL)
         color = first.color
         before = host(color).copy()
-        again = pertev.render(self.scene, cameras=poses(3)[1:], layers=LAYERS, out=first, **SMALL)
+        again = pertev.render(scene, cameras=poses(3)[1:], layers=LAYERS, out=first, **SMALL)
         self.assertIs(again, first)
         self.assertEqual(before[1].tobytes(), host(color)[0].tobytes())
-        for other in ({"cameras": poses(3)}, {"cameras": poses(2), "layers": []}):
-            with self.assertRaises(pertev.InputError) as refused:
-                pertev.render(self.scene, **{"layers": LAYERS, **other}, out=first, **SMALL)
+        for other, says in (({"cameras": poses(3)}, "2 pictures; expected 3"), ({"layers": []}, "expected none"), ({"layers": "depth"}, "expected depth"),
+                            ({"size": (24, 12)}, "24x16; expected 24x12"), ({"transparent": True}, "3 channels; expected 4"),
+                            ({"cameras": None, "on_device": True}, "many cameras")):
+            with self.assertRaisesRegex(pertev.InputError, says) as refused:
+                pertev.render(scene, **{"layers": LAYERS, "cameras": poses(2), **SMALL, **other}, out=first)
             self.assertEqual(refused.exception.setting, "out")
+        with self.assertRaisesRegex(pertev.InputError, "another scene"):
+            pertev.render("cornell-box", cameras=poses(2), layers=LAYERS, out=first, **SMALL)
 
     def test_errors_name_the_wrong_argument(self):
         for arguments, name in [(({"cameras": numpy.eye(4)}), "cameras"), ({"cameras": numpy.zeros((0, 4, 4))}, "cameras"),
@@ -213,6 +219,17 @@ class Cameras(unittest.TestCase):
         for arguments in ({"seeds": [1]}, {"color": False}, {"cameras": poses(1), "output": "x.png"}):
             with self.assertRaises(TypeError):
                 pertev.render(self.scene, **arguments, **SMALL)
+
+    def test_layers_that_a_batch_lacks_are_refused_with_those_that_it_has(self):
+        refused = []
+        for layer in _settings.OF_PICTURES["aov"]["choices"]:
+            try:
+                self.assertEqual(list(pertev.render(self.scene, cameras=poses(1), layers=layer, **SMALL).arrays), ["color", layer])
+            except pertev.InputError as error:
+                self.assertEqual((error.setting, error.value), ("layers", layer))
+                refused.append(error)
+        self.assertEqual([error.value for error in refused], ["motion", "uv", "crypto_object", "crypto_material", "samples", "variance"])
+        self.assertIn("only albedo, normal, depth, position, ids, distance", refused[1].reason)
 
     def test_rays_through_centres_give_the_layers_of_centres(self):
         """These are the settings of docs/python.md for the highest rate, beside `layers_at`."""

@@ -10,6 +10,7 @@ import sys
 import tempfile
 import threading
 import time
+import types
 import unittest
 
 import numpy
@@ -171,7 +172,7 @@ class Errors(unittest.TestCase):
     def test_settings_have_the_names_of_python(self):
         for values, setting in [({"filter_radius": -1}, "filter_radius"), ({"layers": "deepness"}, "layers"), ({"aov": "deepness"}, "aov"), ({"transparent": 1}, "transparent"),
                                 ({"layers": "motion", "cameras": POSES}, "layers"), ({"aov": "motion", "cameras": POSES}, "aov"), ({"eye": (1, 2)}, "eye"),
-                                ({"camera_pose": range(5)}, "camera_pose"), ({"device": "cuda:99"}, "device"),
+                                ({"layers": "uv", "on_device": True}, "layers"), ({"camera_pose": range(5)}, "camera_pose"), ({"device": "cuda:99"}, "device"),
                                 ({"false_color_range": "1", "false_color": "luminance"}, "false_color_range")]:
             with self.subTest(values):
                 error = self.refused(pertev.InputError, setting, lambda: pertev.render(self.scene, **{**SMALL, **values}))
@@ -274,11 +275,23 @@ class Errors(unittest.TestCase):
     def test_unsuitable_out_arrays_are_refused(self):
         read_only = numpy.empty((6, 8, 3), numpy.float32)
         read_only.flags.writeable = False
-        for wrong in (numpy.empty((8, 6, 3), numpy.float32), numpy.empty((6, 8, 3)), numpy.empty((6, 8, 6), numpy.float32)[:, :, ::2],
-                      Elsewhere(numpy.empty((6, 8, 3), numpy.float32)), read_only, [1, 2], None):
+        whole, unaligned = numpy.empty((6, 8, 6), numpy.float32), numpy.empty(577, numpy.uint8)[1:].view(numpy.float32).reshape(6, 8, 3)
+        for wrong, says in [(numpy.empty((8, 6, 3), numpy.float32), r"\(8, 6, 3\); expected \(6, 8, 3\)"), (whole, r"\(6, 8, 6\); expected"), (whole[:, :, 0].copy(), r"\(6, 8\); expected"),
+                            (numpy.empty((6, 8, 3)), "float64; expected float32"), (numpy.empty((6, 8, 3), bool), "bool; expected"), (numpy.empty((6, 8, 3), "u1"), "uint8; expected"),
+                            (whole[:, :, ::2], "not C-contiguous"), (numpy.asfortranarray(whole[:, :, :3]), "not C-contiguous"),
+                            (Elsewhere(whole[:, :, :3].copy()), "is on cuda:0; expected one in the CPU's memory"), (read_only, "read-only"), (unaligned, "multiple of 4"),
+                            (numpy.empty((6, 8, 3), ">f4"), "ndarray of >f4 is not"), ([1, 2], "list is not an array"), (None, "NoneType is not an array")]:
             error = self.refused(pertev.InputError, "out", lambda: pertev.render(self.scene, **SMALL, out={"color": wrong}))
             self.assertEqual(error.value, "color")
-        self.refused(pertev.InputError, "out", lambda: pertev.render(self.scene, **SMALL, out={"depth": read_only}))
+            self.assertRegex(error.reason, says)
+        for name in ("depth", "colour", "id"):
+            error = self.refused(pertev.InputError, "out", lambda: pertev.render(self.scene, **SMALL, layers="ids", out={name: read_only}))
+            self.assertEqual((error.value, error.reason.endswith(" has color, noisy, ids")), (name, True))
+        ids = numpy.zeros((6, 8, 3), numpy.int32)
+        error = self.refused(pertev.InputError, "out", lambda: pertev.render(self.scene, **SMALL, layers="ids", out={"color": 0 * ids.astype("f4"), "ids": ids}))
+        self.assertRegex(error.reason, "int32; expected uint32")
+        color = numpy.zeros((6, 8, 3), numpy.float32)
+        self.assertIs(pertev.render(self.scene, **SMALL, out=types.MappingProxyType({"color": color})).color, color)
 
     def test_results_have_their_layers_and_say_why_they_are_not_pickled(self):
         result = pertev.render(self.scene, **SMALL)
