@@ -16,6 +16,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "apps/cli/commands.h"
+#include "apps/cli/suggest_name.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/version.h"
@@ -71,6 +72,7 @@ nb::dict row_of(const Setting& setting) {
     row["unit"] = setting.unit;
     row["choices"] = choices_of(setting);
     row["type"] = type_of(setting);
+    row["excludes"] = setting.excludes;
     row["is_viewed"] = (setting.verbs & kView) != 0;
     row["default"] = texts_of(PictureOptions(), setting);
     return row;
@@ -401,6 +403,9 @@ NB_MODULE(_core, module) {
         "frame_settings", [] { return settings_of(true); }, "Additional settings of frames");
     module.def("part_settings", &settings_of_parts, "Additional settings of single pictures");
     module.def("read_cameras", &cameras_of_file);
+    module.def("suggest_name", [](const std::string& name, const std::vector<std::string>& names) {
+        return suggest_name(name, names);
+    });
     module.def("raise_parts", &raise_parts, nb::arg("status"), nb::arg("setting"), nb::arg("value"), nb::arg("reason"),
                nb::arg("file"), nb::arg("line"), nb::arg("pointer").none());
     module.def("builtin_scenes", &builtin_scene_names, "Names of the scenes that are part of Pertev");

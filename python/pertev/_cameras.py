@@ -5,10 +5,11 @@ import os
 
 from . import _core
 from ._arrays import on_host
-from ._settings import file_name, number_of, texts_of
+from ._settings import OF_FRAMES, OF_PICTURES, OF_PROGRAM, file_name, number_of, suggested, texts_of
 from .errors import InputError, input_error
 
 
+_NOT_WITH = OF_PICTURES.keys() & OF_PROGRAM["cameras"]["excludes"].split()  # they place one camera
 _OWN = ("convention", "intrinsics_size", "lens", "distortion")  # settings that Cameras may have
 
 
@@ -89,14 +90,22 @@ class Cameras:
         # Numbers that are not finite are refused with the arrays.
         rows = {name: numpy.nan_to_num(row.astype(float)).ravel() for name, row in first.items() if row is not None}
         given = {name: value for name, value in values.items() if value is not None}
-        for name, of in (("camera_pose", "poses"), *([("intrinsics", "K")] if K is not None else [])):
-            if name in given:
-                raise input_error(name, f"the cameras' {of} state it already")
+        for name in given:
+            if name in _NOT_WITH:
+                raise input_error(name, "cannot be combined with cameras; leave out one of them")
+        if K is not None and "intrinsics" in given:
+            raise input_error("intrinsics", "cannot be combined with cameras that have K; leave out one of them")
         texts, own = texts_of({"size": self.size, **given, **rows}), texts_of(self.settings)
         for name in own.keys() & texts.keys():
             if own[name] != texts[name]:
                 raise input_error(name, f"that of the call differs from that of the cameras, {', '.join(own[name])}", ", ".join(texts[name]))
         return K, {**texts, **own}
+
+
+def _of_file(path, reason):
+    error = InputError(f"{path}: {reason}")
+    error.file, error.reason = path, reason
+    return error
 
 
 def _size_of(size):
@@ -121,21 +130,31 @@ def read_cameras(path, *, size=None, convention=None):
     width, height = _size_of(size)
     rows = _core.read_cameras(path := file_name(path, "path"), width, height)
     others = {name for _, settings in rows for name in settings} - {"camera_pose", "intrinsics", "size", *_OWN}
+    if unknown := others - OF_FRAMES.keys():
+        raise _of_file(path, f"there is no setting '{(first := min(unknown))}'{suggested(first, OF_FRAMES)}")
     if others:
-        raise InputError(f"{path}: {', '.join(sorted(others))}: use `pertev render --cameras` for these settings")
+        raise _of_file(path, f"{', '.join(sorted(others))}: Cameras have camera_pose and intrinsics; `pertev render --cameras` takes these settings, too")
 
     def of_all(name, otherwise=None):
         values = {settings.get(name) for _, settings in rows}
         if len(values) > 1:
-            raise InputError(f"{path}: its cameras differ in {name}; render them by `pertev render --cameras`")
+            raise _of_file(path, f"its cameras differ in {name}; render them by `pertev render --cameras`")
         return values.pop() if values and values != {None} else otherwise
 
-    def numbers(name):
-        return [numpy.array(settings[name].split(","), float) for _, settings in rows if name in settings]
+    def numbers(name, *counts):
+        found = []
+        for camera, text in ((camera, settings[name]) for camera, settings in rows if name in settings):
+            try:
+                found.append(numpy.array(text.split(","), float))
+            except ValueError:
+                raise _of_file(path, f"camera '{camera}': {name}: expected numbers, not '{text}'") from None
+            if len(found[-1]) not in counts:
+                raise _of_file(path, f"camera '{camera}': {name}: expected {' or '.join(map(str, counts))} numbers, not {len(found[-1])}")
+        return found
 
-    poses, K = numbers("camera_pose"), numbers("intrinsics")
+    poses, K = numbers("camera_pose", 12, 16), numbers("intrinsics", 4, 9)
     if len(poses) != len(rows) or len(K) not in (0, len(rows)):
-        raise InputError(f"{path}: each camera needs a camera_pose, and all or none have intrinsics")
+        raise _of_file(path, f"each camera needs a camera_pose, and all or none have intrinsics")
     last = numpy.array([0, 0, 0, 1.0])
     cameras = Cameras(numpy.array([numpy.append(pose[:12], last) for pose in poses]).reshape(-1, 4, 4),
                       numpy.array([of if len(of) == 4 else of[[0, 4, 2, 5]] for of in K]) if K else None,

@@ -1,12 +1,11 @@
 """Scenes that stay open, and their parameters."""
 
 import collections.abc
-import difflib
 import os
 
 from . import _core
 from ._process import check_process
-from ._settings import OF_FRAMES, file_name, text_of, texts_of, with_layers
+from ._settings import OF_FRAMES, file_name, nearest, of_layers, suggested, text_of, texts_of, with_layers
 from .errors import InputError, input_error
 
 
@@ -46,8 +45,12 @@ class Params(collections.abc.Mapping):
         return f"<pertev.Params of {self._scene.name}, {len(self)} values>"
 
     def _unknown(self, path):
-        near = difflib.get_close_matches(str(path), self, 1)
-        return KeyError(f"there is no '{path}'" + (f"; did you mean '{near[0]}'?" if near else ""))
+        parts, known = str(path).split("/"), [known.split("/") for known in self]
+        for at, part in enumerate(parts):
+            others = {other[at]: "/".join(other) for other in known if other[:at] + [part] + other[at + 1:] == parts}
+            if near := nearest(part, others):
+                return KeyError(f"there is no '{path}'; did you mean '{others[near]}'?")
+        return KeyError(f"there is no '{path}'")
 
 
 class Scene(_core.Scene):
@@ -156,8 +159,7 @@ def scene(name, **values):
     Raises InputError for an unknown name, and what load() raises.
     """
     if name not in _core.builtin_scenes():
-        near = difflib.get_close_matches(str(name), _core.builtin_scenes(), 1)
-        raise InputError(f"there is no built-in scene '{name}'" + (f"; did you mean '{near[0]}'?" if near else ""))
+        raise InputError(f"there is no built-in scene '{name}'{suggested(name, _core.builtin_scenes())}")
     return load(name, **values)
 
 
@@ -180,7 +182,8 @@ class Session(_core.Session):
         scene = scene_of(scene)
         given = with_layers({"real_time": True, "frames": None if values.get("turntable") else "0-1000000000", **values},
                             layers)
-        super().__init__(scene, texts_of(given, OF_FRAMES))
+        with of_layers(values):
+            super().__init__(scene, texts_of(given, OF_FRAMES))
 
     def __iter__(self):
         return self

@@ -1,6 +1,5 @@
 """Settings as texts: Python's values in the syntax of the table."""
 
-import difflib
 import math
 import operator
 import os
@@ -11,9 +10,12 @@ from ._arrays import on_host
 from .errors import Error, input_error
 
 OF_PICTURES = {row["name"]: row for row in _core.settings()}
-OF_FRAMES = {**OF_PICTURES, **{row["name"]: row for row in _core.frame_settings()}}
+OF_SEQUENCES = {row["name"]: row for row in _core.frame_settings()}
+OF_PROGRAM = {name: OF_SEQUENCES.pop(name) for name in ("cameras", "stereo")}  # their pictures are files
+OF_FRAMES = {**OF_PICTURES, **OF_SEQUENCES}
 OF_PARTS = {row["name"]: row for row in _core.part_settings()}
 OF_STILLS = {**OF_PICTURES, **OF_PARTS}
+ARGUMENTS = ("cameras", "color", "on_device", "out", "output", "seeds", "settings")  # render() has them beside settings
 SEPARATORS = {"A:B": ":", "I/N": "/"}  # by the form of a value
 TOO_LARGE = "the number is too large"
 MATRICES = {"camera_pose": ((4, 4), (3, 4)), "intrinsics": ((3, 3),)}  # shapes of settings that may have rows
@@ -120,13 +122,33 @@ def _texts(row, value):
     return [_text(row, item) for item in ([value] if is_one else value)]
 
 
+def _unknown(name, known):
+    """Returns the TypeError of a name that the call does not have."""
+    for of, names in (("pertev.render", (*OF_PARTS, *ARGUMENTS)), ("pertev.Session", OF_SEQUENCES), ("`pertev render` on the command line", OF_PROGRAM),
+                      ("pictures, not for the viewer", OF_PICTURES)):
+        if name in names:
+            return TypeError(f"'{name}' is for {of}")
+    near = suggested(name, (*known, *(ARGUMENTS if known is OF_STILLS else ())))
+    return TypeError(f"there is no setting '{name}'{near}")
+
+
+def nearest(name, known):
+    """Returns the one of `known` that `name` probably means; empty if there is none."""
+    return _core.suggest_name(ascii(name)[1:-1], list(known))
+
+
+def suggested(name, known):
+    """Returns "; did you mean 'NAME'?" for the nearest name, or nothing."""
+    near = nearest(name, known)
+    return f"; did you mean '{near}'?" if near else ""
+
+
 def texts_of(values, known=OF_PICTURES):
     """Returns the texts of all values that are not None, by the names of their settings."""
     given = {}
     for name, value in values.items():
         if name not in known:
-            near = difflib.get_close_matches(name, known, 1)
-            raise TypeError(f"there is no setting '{name}'" + (f"; did you mean '{near[0]}'?" if near else ""))
+            raise _unknown(name, known)
         if value is not None:
             given[name] = _texts(known[name], value)
     return given

@@ -10,7 +10,7 @@ import weakref
 import webbrowser
 
 from . import _core
-from ._settings import OF_FRAMES, OF_STILLS, file_name, flag_of, number_of, text_of, texts_of
+from ._settings import OF_FRAMES, file_name, flag_of, number_of, text_of, texts_of
 from .errors import Error
 
 
@@ -87,9 +87,6 @@ class Viewer:
 
 
 def _flags_of(values):
-    for name in values:
-        if name in OF_STILLS and name not in OF_VIEWS:
-            raise TypeError(f"{name} is a setting of render(), which the viewer does not have")
     flags = []
     for name, texts in texts_of(values, OF_VIEWS).items():
         flag = "--" + name.replace("_", "-")

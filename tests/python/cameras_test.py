@@ -216,6 +216,14 @@ class Cameras(unittest.TestCase):
             with self.assertRaises(pertev.InputError) as refused:
                 pertev.Cameras(poses(2), K)
             self.assertEqual(refused.exception.setting, "K")
+        for name, value in {"camera": 0, "eye": (0, 1, 3), "target": (0, 0, 0), "up": (0, 1, 0), "camera_pose": poses(1)[0], "camera_from": "a.exr",
+                            "camera_path": "a.json"}.items():
+            for call in (lambda **values: pertev.render(self.scene, **values), lambda **values: pertev.render_chunks(self.scene, **values)):
+                with self.assertRaisesRegex(pertev.InputError, f"^{name}: .*cameras") as refused:
+                    call(cameras=poses(2), **{name: value}, **SMALL)
+                self.assertEqual(refused.exception.setting, name)
+        with self.assertRaisesRegex(pertev.InputError, "^intrinsics: .*cameras"):
+            pertev.render(self.scene, cameras=pertev.Cameras(poses(2), [22, 20, 11, 9]), intrinsics=[22, 20, 11, 9], **SMALL)
         for arguments in ({"seeds": [1]}, {"color": False}, {"cameras": poses(1), "output": "x.png"}):
             with self.assertRaises(TypeError):
                 pertev.render(self.scene, **arguments, **SMALL)
@@ -308,6 +316,13 @@ class Cameras(unittest.TestCase):
                       [{**views[0], "fov": 40}]):
             with self.assertRaises(pertev.InputError):
                 read(*wrong)
+        for name, value, says in (("eye", [0, 0, 0], "^eye: .*camera_pose"), ("K", [22, 20, 11, 9], "no setting 'K'; did you mean 'intrinsics'"), ("spq", 1, "no setting 'spq'; did you mean 'spp'"),
+                                  ("camera_pose", "1,0,a", "camera 'view 0': camera_pose: expected numbers, not '1,0,a'"), ("camera_pose", [1, 2, 3], "expected 12 or 16 numbers, not 3"),
+                                  ("intrinsics", [1, 2, 3, 4, 5], "expected 4 or 9 numbers, not 5")):
+            with self.assertRaises(pertev.InputError) as caught:
+                read({**views[0], name: value})
+            self.assertRegex(caught.exception.reason, says)
+            self.assertEqual(caught.exception.file, str(path))
         with self.assertRaises(pertev.InputError):
             pertev.read_cameras(path.with_name("none.json"))
 

@@ -16,6 +16,7 @@ import unittest
 import numpy
 
 import pertev
+from pertev import _settings
 
 sys.argv.pop(1)
 SMALL = {"size": (8, 6), "spp": 1, "device": "cpu"}
@@ -168,6 +169,31 @@ class Errors(unittest.TestCase):
             cameras[3]
         one_K = pertev.Cameras(cameras.poses, [[8, 8, 4, 3]])[1:]
         self.assertEqual((len(one_K), one_K.K.tolist()), (2, [[8, 8, 4, 3]]))
+
+    def test_unknown_settings_are_suggested_if_one_is_meant(self):
+        session = pertev.Session(self.scene, **SMALL)
+        for meant, names in {"intrinsics": ["K", "camera_matrix", "intrinsic"], "camera_pose": ["pose", "extrinsics", "c2w"], "cameras": ["poses"], "fov": ["fov_deg"],
+                             "size": ["width", "height", "resolution", "image_size"], "spp": ["samples_per_pixel", "num_samples", "Spp", "sp"],
+                             "max_depth": ["bounces", "max_bounces", "depth", "max_dept"], "eye": ["position", "eye_position"], "target": ["look_at"], "device": ["gpu"],
+                             "output": ["outputs"], "aov": ["layer"], "seed": ["random_seed"], "": ["noisy", "xyz", "qwerty", "x" * 1000, "\udcff", "ä"]}.items():
+            for name in names:
+                with self.subTest(name), self.assertRaises(TypeError) as caught:
+                    pertev.render(self.scene, **{name: 1})
+                self.assertTrue(str(caught.exception).endswith(f"; did you mean '{meant}'?" if meant else f"no setting '{name}'"), caught.exception)
+        calls = [lambda **values: pertev.render(self.scene, **values), lambda **values: pertev.render(self.scene, cameras=POSES, **values),
+                 lambda **values: pertev.render_chunks(self.scene, POSES, **values), lambda **values: pertev.load("cornell-box", **values),
+                 lambda **values: pertev.Session(self.scene, **values), session.set, lambda **values: pertev.view(self.scene, **values)]
+        for call in calls:
+            with self.assertRaisesRegex(TypeError, "'intrinsics'"):
+                call(K=numpy.eye(3))
+        for name, said, calls in [("stereo", "`pertev render`", calls), ("frames", "Session", calls[:4] + calls[6:]), ("part", "render", calls[3:]), ("output", "render", calls[3:])]:
+            for call in calls:
+                with self.assertRaisesRegex(TypeError, f"^'{name}' is for .*{said}"):
+                    call(**{name: 1})
+        self.assertEqual(set(_settings.ARGUMENTS), pertev.render.__kwdefaults__.keys() - {"layers"})
+        for name, meant in (("cornel-box", "; did you mean 'cornell-box'?"), ("teapot", "")):
+            with self.assertRaisesRegex(pertev.InputError, f"'{name}'{meant}$".replace("?", "[?]")):
+                pertev.scene(name)
 
     def test_settings_have_the_names_of_python(self):
         for values, setting in [({"filter_radius": -1}, "filter_radius"), ({"layers": "deepness"}, "layers"), ({"aov": "deepness"}, "aov"), ({"transparent": 1}, "transparent"),

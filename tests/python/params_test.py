@@ -233,6 +233,9 @@ class Params(unittest.TestCase):
         params = pertev.load(self.file()).params
         with self.assertRaisesRegex(KeyError, "materials/gold/roughness"):
             params["materials/gold/roughnes"]
+        for wrong in ("materials/gold/qwerty", "materials/silver/roughness", "qwerty"):
+            with self.assertRaisesRegex(KeyError, f"there is no '{wrong}'\"$"):
+                params[wrong]
         with self.assertRaises(KeyError):
             params["materials/gold"] = 1
         self.assertNotIn("lights/lamp/direction", params)

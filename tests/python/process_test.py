@@ -146,7 +146,7 @@ class Viewer(unittest.TestCase):
                     call()
                 self.assertEqual((caught.exception.setting, caught.exception.value), (setting, value))
                 self.assertNotIn("--", str(caught.exception))
-            with self.assertRaisesRegex(TypeError, "^denoise is a setting of render"):
+            with self.assertRaisesRegex(TypeError, "^'denoise' is for pictures, not for the viewer"):
                 pertev.view("cornell-box", denoise="oidn")
 
     def test_view_has_the_settings_of_the_program(self):

@@ -31,7 +31,8 @@ class Flags(CliTest):
                             ("compare x.png --block 2", "--blocks"), ("bench render --sceen x.obj", "--scene"),
                             ("bench rays --cuont 3", "--count"), ("render cornell-box -o x.png --depth 3", "--max-depth"),
                             ("render cornell-box -o x.png -spp 3", "--spp"), ("--verison", "--version"),
-                            ("render cornell-box -o x.png --Seed=3", "--seed")]:
+                            ("render cornell-box -o x.png --Seed=3", "--seed"), ("render cornell-box -o x.png --width 3", "--size"),
+                            ("render cornell-box -o x.png --bounces=3", "--max-depth"), ("render cornell-box -o x.png --fov-deg 3", "--fov")]:
             with self.subTest(line=line):
                 outcome = self.refuse(2, *line.split(), says=[f"no such flag (did you mean {meant}?)"])
                 self.assertNotIn("required:", outcome.stderr.replace("a verb is required:", ""))
