@@ -8,11 +8,11 @@ import sys
 import textwrap
 
 TYPES = {"bool": "bool", "int": "_Int", "float": "_Float", "size": "_Size", "vector": "_Vector | str",
-         "list": "_Text | Sequence[_Text]", "text": "_Text | _Float | _Vector"}
+         "list": "_Text | Iterable[_Text]", "text": "_Text | _Float | _Vector"}
 
 HEAD = '''# Made by python/make_stub.py from the table of settings.
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import TracebackType
 from typing import Any, Literal, Protocol, SupportsFloat, SupportsIndex, TypeAlias, overload
 
@@ -53,9 +53,9 @@ MEMBERS = {"ids": "NDArray[numpy.uint32]", "layers": "dict[str, NDArray[Any]]", 
            "pose": "NDArray[numpy.float64]", "K": "NDArray[numpy.float64]", "bounds": "NDArray[numpy.float64]",
            "instance_names": "list[str]", "material_names": "list[str]", "arrays": "dict[str, Any]", "shape": "tuple[int, ...]", "__cuda_array_interface__": "dict[str, Any]"}
 OF_BATCHES = {"color": "Any", "noisy": "Any", "albedo": "Any", "normal": "Any", "depth": "Any", "distance": "Any", "position": "Any", "ids": "Any",
-              "info": "dict[str, Any] | list[dict[str, Any]]", "hash": "str | list[str]"}
+              "info": "Any", "hash": "Any"}  # many pictures have lists
 SIGNATURES = {
-    "merge": "(files: _Text | Sequence[_Text], *, output: _Text | Sequence[_Text] = (), partial: bool = False, "
+    "merge": "(files: _Text | Iterable[_Text], *, output: _Text | Iterable[_Text] = (), partial: bool = False, "
              "tone_map: _Curve | None = None, exposure: _Float | str | None = None) -> Result",
     "read": "(path: _Text) -> _Floats",
     "read_cameras": "(path: _Text, *, size: _Size | None = None, "
@@ -72,6 +72,7 @@ SIGNATURES = {
                         "intrinsics_size: _Size | None = None, "
                         "lens: _Lens | None = None, distortion: _Vector | str | None = None) -> None",
     "Cameras.__len__": "(self) -> int",
+    "Cameras.__iter__": "(self) -> Iterator[Cameras]",
     "Cameras.__getitem__": "(self, part: slice | _Int | Sequence[int] | _Array) -> Cameras",
     "Params.__init__": "(self, scene: Scene) -> None",
     "Params.__getitem__": "(self, path: str) -> Any",
@@ -90,14 +91,15 @@ SIGNATURES = {
 PARTS = ["meshes: _Parts | None = None,", "materials: _Parts | None = None,", "instances: _Parts | None = None,",
          "lights: _Parts | None = None,", "environment: Any = None,", "cameras: _Parts | None = None,",
          'name: str = "arrays",']
-LAYERS = "layers: str | Sequence[str] = (),"
+LAYERS = "layers: str | Iterable[str] = (),"
 BATCH = ["seeds: _Int | Sequence[_Int] | _Array | _OnDevice | None = None,", "color: bool = True,", LAYERS]
 
 
 def type_of(row):
-    """The type of a setting's values. Other texts than a text's listed choices are refused when they are given."""
+    """The type of a setting's values. Choices are completed by editors; any text is accepted, since a loop over names has texts."""
     if row["choices"] and row["type"] in ("choice", "text"):
-        return f"Literal[{', '.join(repr(choice) for choice in row['choices'])}]"
+        number = " | _Int" if all(choice.isdecimal() for choice in row["choices"]) else ""
+        return f"Literal[{', '.join(repr(choice) for choice in row['choices'])}] | str{number}"
     return TYPES.get(row["type"], "str")
 
 
@@ -126,7 +128,7 @@ def renders(rows, thing):
     for cameras, place, out, returned in ((one, here, arrays, "Result"), (many, any_place, batch, "BatchResult"),
                                           (one, there, batch, "BatchResult")):
         yield "@overload"
-        yield from takes_settings("render", ["scene: Scene | _Text,", "*,", cameras, *BATCH, "output: _Text | Sequence[_Text] = (),",
+        yield from takes_settings("render", ["scene: Scene | _Text,", "*,", cameras, *BATCH, "output: _Text | Iterable[_Text] = (),",
                                              "settings: _Text | None = None,", out, place], returned, rows,
                                   thing if returned == "Result" else None)
 
@@ -156,7 +158,8 @@ def main():
     package = importlib.import_module(folder.name)
     core = importlib.import_module(f"{folder.name}._core")
     rows = core.settings()
-    all_rows, of_parts = rows + core.frame_settings(), rows + core.part_settings()
+    all_rows = list(importlib.import_module(f"{folder.name}._settings").OF_FRAMES.values())
+    of_parts = rows + core.part_settings()
     scene, session, viewer = package.Scene, package.Session, package.Viewer
     types = {row["name"]: type_of(row) for row in rows}
     lines = [HEAD, *(f"{alias}: TypeAlias = {types[name]}" for alias, name in ALIASES.items()), ""]
