@@ -77,15 +77,15 @@ std::vector<Setting> picture_settings() {
         row("layers_at", "Picture", "WHERE", FIELD(render.layers_at),
             "Where layers of aov are evaluated: at the samples, whose values are blended, or at the centres of pixels.",
             In{kExr}, Needs{"aov"}, Excludes{"centre:aov=uv centre:aov=crypto_object centre:aov=crypto_material"},
-            Mark::AfterRecords, Recorded::Changed),
+            Mark::AfterRecords, Recorded::Changed, Changes::Picture),
         row("false_color", "Picture", "NAME", FIELD(false_color),
             "The quantity that PNG and JPEG show in false colours: luminance in cd/m2, or illuminance of visible "
             "surfaces in lx, of which EXR and HDR hold irradiance in W/m2.",
             Choices{{"luminance", "illuminance"}}, Of{integrators_that(has_light_path_layers), "illuminance"},
             Excludes{"exposure tone_map f_number lut transparent illuminance:denoise!=none"}, Mark::AfterRecords,
-            Recorded::AsUsed),
+            Recorded::AsUsed, Changes::Picture),
         row("false_color_range", "Picture", "A,B", FIELD(false_color_range), "The ends of the false-color scale.",
-            Otherwise{"the picture's own range"}, Needs{"false_color"}, Mark::AfterRecords),
+            Otherwise{"the picture's own range"}, Needs{"false_color"}, Mark::AfterRecords, Changes::Picture),
         row("lpe", "Picture", "NAME=EXPRESSION", FIELD(lpe),
             "An EXR layer with the light of paths that match an expression from the light to the eye: LD+E, caustics "
             "LS+DE, or L<'lamp'>.*E. It may be given again (docs/transport.md).",
