@@ -89,4 +89,6 @@ MUTATIONS = [
     ("little loss in many scatterings ends paths", "unit/subpaths", ("src/integrators/subpaths/subpath_vertex.h", "if (sample.is_delta()) chance", "chance")),
     ("hits are sorted by the groups of other materials", "unit/order_hits", ("src/integrators/path/order_hits.h", "[scene.instances[instance].material]", "[instance]")),
     ("hits are sorted into the places of other groups", "unit/order_hits", ("src/integrators/path/order_hits.h", "k < group;", "k + 1 < group;")),
+    ("photons on the back of a leaf that do not light it", "statistical/photon_map",
+     ("src/integrators/photon_map/estimate_radiance.h", "facing < -0.7071f &&", "false &&")),
 ]

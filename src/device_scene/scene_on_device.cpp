@@ -9,6 +9,7 @@
 #include "device_scene/pack_texels.h"
 #include "device_scene/part_arrays.h"
 #include "image/srgb_table.h"
+#include "shading/lobes/fresnel.h"
 #include "shading/shading_groups.h"
 
 namespace pertev {
@@ -119,6 +120,22 @@ struct Materials {
     std::vector<MaterialParameters> parameters;
     std::vector<uint8_t> groups; // SceneView::shading_groups
 };
+
+/// Returns the least alpha that counts as at least the cutoff. Alpha is a product of a factor, bilinear texels and a
+/// vertex's alpha, and each of these rounds by at most 2^-23 of itself, so a value that equals the cutoff exactly may
+/// come out slightly below it. One step of a 16-bit texel is 32 times more than this. A cutoff above 1 hides
+/// everything.
+float alpha_that_reaches(float cutoff) { return cutoff > 1 ? cutoff : (1.0f - 0x1p-21f) * cutoff; }
+
+/// Returns what the device has of a material. The base colour of a conductor, which its index replaces, is the
+/// reflectance at normal incidence there, for the layer `albedo`.
+MaterialParameters parameters_for_device(const Material& material) {
+    MaterialParameters parameters = material;
+    parameters.alpha_cutoff = alpha_that_reaches(material.alpha_cutoff);
+    if (material.kind == MaterialKind::Conductor)
+        parameters.base_color = fresnel_conductor(1.0f, material.eta, material.k);
+    return parameters;
+}
 
 PartArrays list_materials(const Scene& scene, Materials& materials, SceneView& view) {
     for (const Material& material : scene.materials) materials.parameters.push_back(parameters_for_device(material));

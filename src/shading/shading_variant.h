@@ -49,16 +49,4 @@ HD inline bool has_texture(const TextureRef& slot) {
     return has_textures(kVariant) && slot.has_image();
 }
 
-/// Returns the least alpha that counts as at least the cutoff. Alpha is a product of a factor, bilinear texels and a
-/// vertex's alpha, and each of these rounds by at most 2^-23 of itself, so a value that equals the cutoff exactly may
-/// come out slightly below it. One step of a 16-bit texel is 32 times more than this. A cutoff above 1 hides
-/// everything.
-inline float alpha_that_reaches(float cutoff) { return cutoff > 1 ? cutoff : (1.0f - 0x1p-21f) * cutoff; }
-
-inline MaterialParameters parameters_for_device(const Material& material) {
-    MaterialParameters parameters = material;
-    parameters.alpha_cutoff = alpha_that_reaches(material.alpha_cutoff);
-    return parameters;
-}
-
 } // namespace pertev

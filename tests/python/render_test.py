@@ -79,6 +79,15 @@ class Render(unittest.TestCase):
         self.assertEqual(set(picture.info), names)
         self.assertIn("tall block", next(str(value) for name, value in picture.info.items() if name.endswith("/manifest")))
 
+    def test_the_albedo_of_a_conductor_is_its_reflectance_at_normal_incidence(self):
+        eta, k = numpy.array([0.2, 0.9, 1.1]), numpy.array([3.9, 2.4, 1.9])
+        metal = f"white eta={','.join(map(str, eta))} k={','.join(map(str, k))} kind=conductor"
+        before, after = (pertev.render("cornell-box", size=(16, 16), spp=1, layers=["albedo"], layers_at="centre", material=material).albedo
+                         for material in ([], [metal]))
+        changed = (before != after).any(-1)
+        self.assertGreater(changed.sum(), 50)
+        numpy.testing.assert_allclose(after[changed], numpy.broadcast_to(((eta - 1)**2 + k**2) / ((eta + 1)**2 + k**2), (changed.sum(), 3)), rtol=1e-5)
+
     def test_layers_may_be_requested_with_a_file_that_has_none(self):
         with tempfile.TemporaryDirectory() as folder:
             picture = pertev.render("cornell-box", size=(8, 8), spp=1, layers="depth", output=f"{folder}/a.png")

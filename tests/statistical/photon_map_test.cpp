@@ -35,9 +35,12 @@ std::vector<PhotonCase> photon_cases() {
     const Material wall = test::white(0.6f);
     const Material plastic = test::of_roughness(MaterialKind::MetallicRoughness, 0.4f);
     const Material varnished = test::of_roughness(MaterialKind::MetallicRoughness, 0); // a delta lobe on a diffuse one
+    Material leaf = test::of_roughness(MaterialKind::MetallicRoughness, 1);
+    leaf.diffuse_transmission_weight = 0.7f; // photons on the back give most of its light
     return {
         {"diffuse", test::room_with_ball(test::white(0.8f), wall, false)},
         {"glass", test::room_with_ball(test::of_roughness(MaterialKind::Dielectric, 0), wall, false)},
+        {"leaf", test::room_with_ball(leaf, wall, false)},
         {"glossy", test::room_with_ball(test::of_roughness(MaterialKind::MetallicRoughness, 0.3f, 1), plastic, false)},
         {"mirrors under the sky", test::room_with_ball(test::of_roughness(MaterialKind::Conductor, 0), varnished, true),
          4e-2, 2048}}; // because its sun is small

@@ -3,7 +3,8 @@
 // Estimates the light that a diffuse surface scatters from the photons near a point, within the radius r:
 //     L = sum over photons of f(wo, wi) power / (pi r^2),
 // where f is the BSDF of the diffuse lobes. Photons on surfaces turned away by more than 45 degrees belong to another
-// wall and do not count, nor do those of another owner (photon_map_view.h).
+// wall and do not count, unless they are on the back of a surface that lets light through, nor do those of another
+// owner (photon_map_view.h).
 //
 // Sources: Jensen, "Global Illumination using Photon Maps", 1996, section 5. Of the k nearest photons the farthest
 // sets the radius and does not count itself, so that the mean is right for uniform photons (Loftsgaarden, Quesenberry
@@ -119,8 +120,11 @@ private:
         const Float4 power = map.photons.powers[number], direction = map.photons.directions[number];
         if (PhotonsView::scatterings(power) > receiver.max_scatterings) return {};
         if (PhotonsView::owner(power) != receiver.owner) return {};
-        if (!(dot(unpack_normal(bits_of(direction.w)), receiver.normal) > 0.7071f)) return {};
         const Vec3 wi = {direction.x, direction.y, direction.z};
+        const float facing = dot(unpack_normal(bits_of(direction.w)), receiver.normal);
+        const bool is_behind =
+            facing < -0.7071f && receiver.surface.bsdf.lets_through() && dot(wi, receiver.normal) < 0;
+        if (!(facing > 0.7071f) && !is_behind) return {};
         const float cosine = abs(dot(wi, receiver.surface.geometric_normal));
         const Rgb f = evaluate_surface<kVariant>(receiver.surface, receiver.wo, wi, only(LobeClass::Diffuse)).f;
         if (is_black(f) || !(cosine > 0)) return {};
