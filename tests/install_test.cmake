@@ -3,7 +3,7 @@ set(prefix ${BUILD}/install_test)
 file(REMOVE_RECURSE ${prefix})
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 foreach(file share/pertev/scenes/cornell-box/cornell-box.gltf share/doc/pertev/LICENSE share/doc/pertev/README.md
-             share/doc/pertev/docs/conventions.md share/doc/pertev/docs/notices.md share/doc/pertev/bench/results/jobs_h200.json share/man/man1/pertev.1 share/bash-completion/completions/pertev)
+             share/doc/pertev/docs/conventions.md share/doc/pertev/docs/notices.md share/doc/pertev/bench/results/jobs_h200.json share/man/man1/pertev.1 share/bash-completion/completions/pertev share/zsh/vendor-completions/_pertev)
   if(NOT EXISTS ${prefix}/${file})
     message(FATAL_ERROR "the installed tree lacks ${file}")
   endif()
