@@ -290,8 +290,8 @@ TEST_CASE("KHR_animation_pointer animates numbers of materials, within their ran
     CHECK(test::has_warning(messages, {"/animations/0/channels/1"}));
     const Scene dispersing =
         test::read_gltf_text(document(channel("1/extensions/KHR_materials_dispersion/dispersion", 0)), messages);
-    CHECK(dispersing.animations.at(0).channels.at(0).values == std::vector<float>{0.125f, 1}); // over 20 / 2
-    CHECK(dispersing.materials.at(0).transmission_dispersion_abbe_number == 10.0f);
+    CHECK(dispersing.animations.at(0).channels.at(0).values == std::vector<float>{0.25f * 0.05f, 0.1f}); // over 1
+    CHECK(dispersing.materials.at(0).transmission_dispersion_abbe_number == 1.0f);
     PosedScene bending(test::read_gltf_text(document(channel("1/extensions/KHR_materials_ior/ior", 3)), messages));
     const Material& glass = bending.scene().materials.at(0);
     bending.set_time(0);

@@ -265,6 +265,15 @@ std::vector<JsonValue> animations_of(const Document& document, Sink& sink) {
     return elements_or_none(document.root(), "animations", sink);
 }
 
+/// Returns whether the target is a reflection that solid glass lacks, whose extension has been left out.
+bool is_beside_glass(const Target& target, const Scene& scene) {
+    if (target.part != AnimatedPart::MaterialNumbers ||
+        scene.materials[target.indices[0]].kind != MaterialKind::Dielectric)
+        return false;
+    const auto is_target = [&](const char* name) { return target.numbers == material_numbers(name); };
+    return is_target("specular_weight") || is_target("specular_color") || is_target("specular_retroreflectivity");
+}
+
 /// Returns whether the target is the absorption of a solid whose medium has it (KHR_materials_volume_scatter).
 bool attenuates_medium(const Target& target, const Scene& scene) {
     if (target.part != AnimatedPart::MaterialNumbers || !scene.materials[target.indices[0]].medium.is_there())
@@ -273,26 +282,30 @@ bool attenuates_medium(const Target& target, const Scene& scene) {
            target.numbers == material_numbers("transmission_color");
 }
 
+/// Calls inspect(target) for the target of each channel of a playing clip.
+template <class Inspect>
+void visit_targets(const Document& document, std::span<const Clip> clips, const Inspect& inspect) {
+    Sink& unheard = nobody(); // read_animations reports what cannot be read
+    auto clip = clips.begin();
+    for (const JsonValue& animation : animations_of(document, unheard)) {
+        if (!(clip++)->plays) continue;
+        for (const JsonValue& channel : elements_or_none(animation, "channels", unheard)) {
+            read_or_leave_out(channel, unheard, [&] { inspect(channel.at("target")); });
+        }
+    }
+}
+
 /// Returns the nodes whose property at `path` a channel of a playing clip changes.
 std::set<uint32_t> nodes_animated_at(std::string_view path, const Document& document, std::span<const Clip> clips) {
     std::set<uint32_t> nodes;
-    const auto inspect = [&](const JsonValue& channel) {
-        const JsonValue target = channel.at("target");
+    visit_targets(document, clips, [&](const JsonValue& target) {
         if (const auto extension = target.extension("KHR_animation_pointer")) {
             const std::string pointer = extension->string_or("pointer", "");
             if (const auto node = node_of_pointer(document, pointer, path)) nodes.insert(*node);
         } else if (const auto node = target.find("node"); node && target.string_or("path", "") == path) {
             nodes.insert(document.index_into("nodes", *node));
         }
-    };
-    Sink& unheard = nobody(); // read_animations reports what cannot be read
-    auto clip = clips.begin();
-    for (const JsonValue& animation : animations_of(document, unheard)) {
-        if (!(clip++)->plays) continue;
-        for (const JsonValue& channel : elements_or_none(animation, "channels", unheard)) {
-            read_or_leave_out(channel, unheard, [&] { inspect(channel); });
-        }
-    }
+    });
     return nodes;
 }
 
@@ -304,6 +317,15 @@ std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::sp
 
 std::set<uint32_t> nodes_with_animated_visibility(const Document& document, std::span<const Clip> clips) {
     return nodes_animated_at(kVisible, document, clips);
+}
+
+std::set<std::string> animated_pointers(const Document& document, std::span<const Clip> clips) {
+    std::set<std::string> pointers;
+    visit_targets(document, clips, [&](const JsonValue& target) {
+        const auto extension = target.extension("KHR_animation_pointer");
+        if (extension) pointers.insert(extension->string_or("pointer", ""));
+    });
+    return pointers;
 }
 
 void read_animations(const Document& document, Buffers& buffers, const Materials& materials, Scene& scene,
@@ -323,6 +345,10 @@ void read_animations(const Document& document, Buffers& buffers, const Materials
             const JsonValue json = entry.at("target");
             const std::optional<Target> target = read_target(document, json, materials, scene, sink);
             if (!target || target->indices.empty()) return;
+            if (is_beside_glass(*target, scene)) {
+                sink.leave_out({entry.location(), "solid glass reflects by its index alone; the channel is left out"});
+                return;
+            }
             if (attenuates_medium(*target, scene)) {
                 sink.leave_out({entry.location(), "the attenuation of a volume that scatters does not change; the "
                                                   "channel is left out"});

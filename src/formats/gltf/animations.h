@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <set>
 #include <span>
+#include <string>
 
 #include "formats/gltf/accessor.h"
 #include "formats/gltf/materials.h"
@@ -18,6 +19,9 @@ namespace pertev::gltf {
 std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::span<const Clip> clips);
 /// Nodes that a channel of a playing clip shows or hides.
 std::set<uint32_t> nodes_with_animated_visibility(const Document& document, std::span<const Clip> clips);
+
+/// JSON pointers of KHR_animation_pointer in channels of playing clips.
+std::set<std::string> animated_pointers(const Document& document, std::span<const Clip> clips);
 
 /// Fills scene.animations with the clips that play, and the end of each clip in scene.clips; nodes, cameras, lights
 /// and clips have been read. Channels of clips that do not play cause no messages. An unreadable channel is left out

@@ -13,6 +13,10 @@ constexpr std::string_view kDispersion = "/extensions/KHR_materials_dispersion/d
 constexpr std::string_view kEmission = "/emissiveFactor",
                            kStrength = "/extensions/KHR_materials_emissive_strength/emissiveStrength";
 
+// KHR_materials_pbrSpecularGlossiness replaces these.
+constexpr std::string_view kOfMetal[] = {"/pbrMetallicRoughness/", "/extensions/KHR_materials_ior/",
+                                         "/extensions/KHR_materials_specular/"};
+
 struct NamedNumber {
     std::string_view path; // beneath the material
     const char *name, *further = nullptr;
@@ -127,7 +131,11 @@ std::optional<MaterialPointer> find_material_pointer(const Document& document, s
     const std::optional<uint32_t> index = parse_whole_number<uint32_t>(rest.substr(0, end));
     if (!index || *index >= document.table("materials").size()) return std::nullopt;
     const std::string_view path = rest.substr(end);
-    if (auto texture = find_texture(document.table("materials")[*index], path)) {
+    const JsonValue& material = document.table("materials")[*index];
+    if (material.extension("KHR_materials_pbrSpecularGlossiness") &&
+        std::ranges::any_of(kOfMetal, [&](std::string_view start) { return path.starts_with(start); }))
+        return std::nullopt;
+    if (auto texture = find_texture(material, path)) {
         texture->material = *index;
         return texture;
     }
@@ -136,13 +144,11 @@ std::optional<MaterialPointer> find_material_pointer(const Document& document, s
         MaterialPointer found = {.material = *index, .numbers = material_numbers(number.name)};
         if (number.further != nullptr) found.numbers.push_back(material_numbers(number.further).at(0));
         found.components = found.numbers.size();
-        const JsonValue& material = document.table("materials")[*index];
         if (path == kEmission) {
             const auto extension = material.extension("KHR_materials_emissive_strength");
             if (extension) found.scale = extension->float_or("emissiveStrength", 1);
-        } else if (path == kDispersion) { // Abbe's number stays that of the material
-            const auto extension = material.extension("KHR_materials_dispersion");
-            if (extension) found.scale = 1.0f / std::max(extension->float_or("dispersion", 0), 1.0f);
+        } else if (path == kDispersion) { // Abbe's number is 1 (Materials)
+            found.scale = 1 / kAbbeNumberOfDispersion;
         } else if (path == kStrength) {
             const std::array<float, 3> color = material.floats_or<3>("emissiveFactor", {0, 0, 0});
             found.components = 1;

@@ -12,6 +12,8 @@
 
 namespace pertev::gltf {
 
+inline constexpr float kAbbeNumberOfDispersion = 20; // that of a KHR_materials_dispersion of 1
+
 struct MaterialPointer {
     uint32_t material = 0; // index in the file
     AnimatedPart part = AnimatedPart::MaterialNumbers;

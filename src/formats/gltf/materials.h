@@ -10,6 +10,9 @@
 // approximate.
 
 #include <optional>
+#include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "formats/gltf/leave_out.h"
@@ -22,8 +25,10 @@ namespace pertev::gltf {
 class Materials {
 public:
     /// Reads materials on demand. A null `textures` leaves all materials out: every surface is then the same grey.
-    Materials(const Document& document, Textures* textures, Scene& scene, Sink& sink)
-        : document_(document), textures_(textures), scene_(scene), sink_(sink),
+    /// `animated` has the JSON pointers of what animations change: a factor among them is read with all that belongs to
+    /// it, even where it has no effect at rest.
+    Materials(const Document& document, Textures* textures, std::set<std::string> animated, Scene& scene, Sink& sink)
+        : document_(document), textures_(textures), animated_(std::move(animated)), scene_(scene), sink_(sink),
           by_index_(document.table("materials").size()) {}
 
     /// Index in scene.materials of the material of `primitive` in the scene's variant; glTF's default material if it
@@ -45,6 +50,9 @@ private:
     void attempt_at(const JsonValue& source, const Read& read) const {
         read_or_leave_out(fmt::format("this property of {}", source.pointer()), sink_, read);
     }
+    /// Returns whether an animation changes a factor "EXTENSION/NAME" of a material.
+    bool is_animated(const JsonValue& source, std::string_view factor) const;
+    bool changes_metal(const JsonValue& source) const;
     std::optional<JsonValue> material_in_variant(const JsonValue& primitive) const;
     uint32_t add(Material material);
     Material read(const JsonValue& material);
@@ -54,8 +62,9 @@ private:
     void read_alpha(const JsonValue& source, Material& material) const;
     void read_specular(const JsonValue& source, Material& material);
     void read_transmission(const JsonValue& source, Material& material);
-    static void read_attenuation(const JsonValue& volume, Material& material);
-    static void read_dispersion(const JsonValue& source, Material& material);
+    /// Reads one without effect only if it `changes`.
+    static void read_attenuation(const JsonValue& volume, bool changes, Material& material);
+    void read_dispersion(const JsonValue& source, Material& material);
     void read_anisotropy(const JsonValue& source, Material& material);
     void read_retroreflection(const JsonValue& source, Material& material);
     void read_thin_film(const JsonValue& source, Material& material);
@@ -70,6 +79,7 @@ private:
 
     const Document& document_;
     Textures* textures_;
+    std::set<std::string> animated_;
     Scene& scene_;
     Sink& sink_;
     std::vector<std::optional<uint32_t>> by_index_;

@@ -91,7 +91,8 @@ Scene read_asset(const std::filesystem::path& path, std::vector<std::byte> bytes
     TextureLoader loader(access, sink);
     loader.shrink_to(options.max_texture_size);
     Textures textures(document, buffers, loader, sink);
-    Materials materials(document, options.geometry_only ? nullptr : &textures, scene, sink);
+    Materials materials(document, options.geometry_only ? nullptr : &textures, animated_pointers(document, scene.clips),
+                        scene, sink);
     Meshes meshes(document, buffers, nodes, materials, scene, options.geometry_only, sink);
     scene.nodes = nodes.take_nodes();
     read_node_shapes(document, buffers, scene, sink);

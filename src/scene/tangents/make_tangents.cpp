@@ -162,16 +162,30 @@ constexpr uint32_t kNone = 0xffffffffu;
 using MeshBySet = std::array<uint32_t, kTextureSets>;
 
 /// Returns whether only the anisotropy of its reflection or its coat needs tangents, with or without a texture.
-bool is_stretched(const Material& material) {
+bool is_stretched(const MaterialParameters& material) {
     return (material.has_anisotropy() || material.has_coat_anisotropy()) && !material.normal_texture.has_image();
 }
 
 /// Returns the texture that selects the set of coordinates for tangents; of several the base's.
-const TextureRef& tangent_map(const Material& material) {
+const TextureRef& tangent_map(const MaterialParameters& material) {
     if (material.normal_texture.has_image()) return material.normal_texture;
     if (material.has_coat() && material.coat_normal_texture.has_image()) return material.coat_normal_texture;
     const bool is_of_coat = material.has_coat_anisotropy() && !material.has_anisotropy();
     return is_of_coat ? material.coat_anisotropy_texture : material.anisotropy_texture;
+}
+
+/// Returns the scene's materials with all coats and anisotropies that animations may give them.
+std::vector<MaterialParameters> materials_in_motion(const Scene& scene) {
+    std::vector<MaterialParameters> materials(scene.materials.begin(), scene.materials.end());
+    for (const Animation& animation : scene.animations) {
+        for (const AnimationChannel& channel : animation.channels) {
+            if (channel.part != AnimatedPart::MaterialNumbers) continue;
+            const auto changes = [&](const char* name) { return channel.numbers == material_numbers(name); };
+            if (changes("coat_weight")) materials[channel.target].coat_weight = 1;
+            if (changes("specular_roughness_anisotropy")) materials[channel.target].specular_roughness_anisotropy = 1;
+        }
+    }
+    return materials;
 }
 
 /// Adds copies of meshes that need tangents for several sets, and redirects instances to theirs.
@@ -179,8 +193,9 @@ std::vector<MeshBySet> choose_meshes(Scene& scene) {
     MeshBySet none;
     none.fill(kNone);
     std::vector<MeshBySet> chosen(scene.meshes.size(), none);
+    const std::vector<MaterialParameters> materials = materials_in_motion(scene);
     for (Instance& instance : scene.instances) {
-        const Material& material = scene.materials[instance.material];
+        const MaterialParameters& material = materials[instance.material];
         const TextureRef& map = tangent_map(material);
         const Mesh& mesh = scene.meshes[instance.mesh];
         if (!(map.has_image() || is_stretched(material)) || !mesh.tangents.empty() || mesh.uv[map.uv_set].empty())
