@@ -1,23 +1,24 @@
 #include "session/set_materials.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "base/error.h"
+#include "base/limits.h"
 #include "base/message_text.h"
 #include "formats/files/parse_number.h"
 #include "scene/metals.h"
 #include "scene/names.h"
+#include "session/material_effects.h"
+#include "session/material_names.h"
 
 namespace pertev {
 namespace {
 
-/// Parameters that a Diffuse material does not use.
-constexpr std::string_view kOfReflection[] = {
-    "metallic", "roughness", "ior", "specular_weight", "specular_color", "transmission_weight", "metal_fresnel"};
 constexpr std::string_view kOfConductor[] = {"eta", "k"};
 
 /// Names of OpenPBR Surface 1.1.1 for parameters that have another one here.
@@ -37,46 +38,67 @@ bool is_one_of(std::span<const std::string_view> names, std::string_view name) {
     return std::ranges::find(names, name) != names.end();
 }
 
-/// Calls flag(value, name) for each parameter that is true or false.
-template <class Parameters, class Flag>
-void visit_flags(Parameters& m, const Flag& flag) {
-    flag(m.double_sided, "double_sided");
-    flag(m.two_sided_emission, "two_sided_emission");
-    flag(m.thin_walled, "thin_walled");
-    flag(m.is_clear_boundary, "is_clear_boundary");
-    flag(m.has_relative_ior, "has_relative_ior");
+std::string_view name_of_kind(const Material& material) {
+    std::string_view found;
+    visit_choices(material, [&](auto choice, std::string_view name, std::initializer_list<const char*> names) {
+        if (name == "kind") found = names.begin()[static_cast<int>(choice)];
+    });
+    return found;
 }
 
-std::string name_of_material(const Scene& scene, std::size_t index) {
-    const std::string& name = scene.materials[index].name;
-    return name.empty() ? fmt::format("{}", index) : name;
-}
+/// A parameter that a change set.
+struct SetKey {
+    std::size_t material = 0;
+    std::string key, given; // its name here and in the change
+};
 
 class Changer {
 public:
-    Changer(const MaterialChange& change, Material& material) : change_(change), material_(material) {}
+    Changer(const MaterialChange& change, Material& material, double lumens_per_watt)
+        : change_(change), material_(material), lumens_per_watt_(lumens_per_watt) {}
 
-    void set(const std::string& key, const std::string& value) {
+    /// Sets a parameter, and returns its name here.
+    std::string set(const std::string& key, const std::string& value) {
+        if (key == "base_weight") return set_later(base_weight_, "base_color", key, value, 1, 1);
+        if (key == "emission_luminance") return set_later(luminance_, "emission", key, value, 1, kMaxSampleValue);
+        if (key == "emission_color") return set_later(emission_color_, "emission", key, value, 3, kMaxSampleValue);
         const auto* const other = std::ranges::find(kOfOpenPbr, key, &OpenPbrName::name);
-        if (other == std::end(kOfOpenPbr)) return set_own(key, key, value, 1);
-        set_own(std::string(other->own), key, value, other->factor);
+        const std::string own(other == std::end(kOfOpenPbr) ? key : other->own);
+        set_own(own, key, value, other == std::end(kOfOpenPbr) ? 1 : other->factor);
         const bool shows_opacity = material_.alpha_mode != AlphaMode::Opaque || material_.alpha == 1;
         if (key == kOpacity && !shows_opacity) material_.alpha_mode = AlphaMode::Blend;
+        return own;
     }
 
     /// Ends the change, after all its keys.
     void finish(Sink& sink) {
+        if (!base_weight_.empty()) material_.base_color = base_weight_[0] * material_.base_color;
+        set_emission();
         if (material_.is_clear_boundary) material_.make_clear_boundary();
         if (material_.medium.is_there() && !material_.encloses() && sets_medium())
             sink.leave_out({"material", change_.text, "its medium is left out, because no light enters the material"});
     }
 
 private:
+    /// Reads numbers of OpenPBR that finish() uses together with others; returns the name of what they set.
+    std::string set_later(std::vector<float>& numbers, const char* sets, const std::string& given,
+                          const std::string& text, std::size_t count, float most) {
+        numbers = read_numbers(given, text, count, 0, most, 1);
+        return sets;
+    }
+
+    void set_emission() {
+        if (luminance_.empty() && emission_color_.empty()) return;
+        if (luminance_.empty()) refuse("emission_color needs emission_luminance");
+        const Rgb color =
+            emission_color_.empty() ? grey(1) : Rgb{emission_color_[0], emission_color_[1], emission_color_[2]};
+        const Rgb emission = static_cast<float>(static_cast<double>(luminance_[0]) / lumens_per_watt_) * color;
+        if (max_component(emission) > kMaxSampleValue) refuse("the emission is too large");
+        material_.emission = emission;
+    }
+
     /// `given` is the name of `key` in the change.
     void set_own(const std::string& key, const std::string& given, const std::string& value, float factor) {
-        if (is_one_of(kOfReflection, key) && material_.kind == MaterialKind::Diffuse) {
-            material_.kind = MaterialKind::MetallicRoughness;
-        }
         if (is_one_of(kOfConductor, key) && material_.kind != MaterialKind::Conductor) {
             refuse(key + " is of kind=conductor alone");
         }
@@ -98,6 +120,9 @@ private:
         });
         set_numbers(key, given, value, factor, is_known);
         if (!is_known) refuse(fmt::format("there is no {}; there are {}", key, fmt::join(known_names(), ", ")));
+        if (material_.kind == MaterialKind::Diffuse && makes_reflective(key, has_default(material_, key))) {
+            material_.kind = MaterialKind::MetallicRoughness;
+        }
     }
 
     bool sets_medium() const {
@@ -136,22 +161,29 @@ private:
             });
         if (channels.empty()) return;
         is_known = true;
+        const std::vector<float> values = read_numbers(given, text, channels.size(), least, most, factor);
+        for (std::size_t i = 0; i < values.size(); ++i) *channels[i] = values[i];
+    }
+
+    /// Returns `count` numbers, each times `factor` and from `least` to `most`; one is for all.
+    std::vector<float> read_numbers(const std::string& given, const std::string& text, std::size_t count, float least,
+                                    float most, float factor) const {
         std::vector<float> values;
         for (std::string_view rest = text;;) {
             const std::size_t comma = std::min(rest.find(','), rest.size());
             std::optional<float> value = parse_whole_float(rest.substr(0, comma));
             if (value) *value *= factor;
             if (!value || !(*value >= least && *value <= most)) {
-                refuse(fmt::format("{} is {} from {} to {}", given, channels.size() > 1 ? "R,G,B, each" : "a number",
+                refuse(fmt::format("{} is {} from {} to {}", given, count > 1 ? "R,G,B, each" : "a number",
                                    least / factor, most / factor));
             }
             values.push_back(*value);
             if (comma == rest.size()) break;
             rest.remove_prefix(comma + 1);
         }
-        if (values.size() == 1) values.resize(channels.size(), values[0]);
-        if (values.size() != channels.size()) refuse(fmt::format("{} has {} numbers", given, channels.size()));
-        for (std::size_t i = 0; i < values.size(); ++i) *channels[i] = values[i];
+        if (values.size() == 1) values.resize(count, values[0]);
+        if (values.size() != count) refuse(fmt::format("{} has {} numbers", given, count));
+        return values;
     }
 
     static std::vector<std::string> known_names() {
@@ -170,7 +202,35 @@ private:
 
     const MaterialChange& change_;
     Material& material_;
+    double lumens_per_watt_;
+    std::vector<float> base_weight_, luminance_, emission_color_; // none: not given
 };
+
+/// Warns of parameters that have no effect on the kind of their material, once for each kind.
+void report_unused(const Scene& scene, const MaterialChange& change, const std::vector<SetKey>& keys, Sink& sink) {
+    struct Unused {
+        std::vector<std::size_t> materials;
+        std::vector<std::string> keys;
+    };
+    std::map<std::string_view, Unused> by_kind;
+    const auto add = [](auto& list, const auto& value) {
+        if (std::ranges::find(list, value) == list.end()) list.push_back(value);
+    };
+    for (const SetKey& set : keys) {
+        const Material& material = scene.materials[set.material];
+        if (is_heeded(material, set.key)) continue;
+        Unused& unused = by_kind[name_of_kind(material)];
+        if (unused.materials.empty() || unused.materials.back() != set.material)
+            unused.materials.push_back(set.material);
+        add(unused.keys, set.given);
+    }
+    for (const auto& [kind, unused] : by_kind) {
+        sink.warn(
+            {"material", change.text,
+             fmt::format("{} {} no effect on kind={}, that of {}", fmt::join(unused.keys, ", "),
+                         unused.keys.size() == 1 ? "has" : "have", kind, names_of_materials(scene, unused.materials))});
+    }
+}
 
 /// Returns the key and the value of a last word KEY=VALUE of `text`, and removes them; nothing if there is none.
 std::optional<std::pair<std::string, std::string>> take_last_value(std::string_view& text) {
@@ -199,16 +259,19 @@ MaterialChange parse_material_change(std::string_view text) {
     return change;
 }
 
-void set_materials(Scene& scene, std::span<const MaterialChange> changes, Sink& sink) {
+void set_materials(Scene& scene, std::span<const MaterialChange> changes, Sink& sink, double lumens_per_watt) {
+    // A list for each change; they are judged last, because a later change may set the kind.
+    std::vector<std::vector<SetKey>> keys;
     for (const MaterialChange& change : changes) {
+        keys.emplace_back();
         bool is_found = false;
         std::vector<std::string> names;
         for (std::size_t i = 0; i < scene.materials.size(); ++i) {
             names.push_back(name_of_material(scene, i));
             if (!matches_name(change.name, names.back())) continue;
             is_found = true;
-            Changer changer(change, scene.materials[i]);
-            for (const auto& [key, value] : change.values) changer.set(key, value);
+            Changer changer(change, scene.materials[i], lumens_per_watt);
+            for (const auto& [key, value] : change.values) keys.back().push_back({i, changer.set(key, value), key});
             changer.finish(sink);
         }
         if (is_found) continue;
@@ -217,6 +280,7 @@ void set_materials(Scene& scene, std::span<const MaterialChange> changes, Sink& 
         throw Error(ErrorCode::BadInput, "material", change.text,
                     "the scene has no material with this name; " + some_names(all));
     }
+    for (std::size_t i = 0; i < changes.size(); ++i) report_unused(scene, changes[i], keys[i], sink);
 }
 
 std::string describe_material(const Scene& scene, std::size_t index) {

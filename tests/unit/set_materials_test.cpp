@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include "scene/metals.h"
 #include "session/opening/open_scene.h"
 #include "session/set_materials.h"
@@ -32,6 +34,17 @@ bool refuses_change(const std::string& text, const std::string& why) {
     Scene scene = three_materials();
     const auto error = test::thrown_error([&] { change(scene, text); });
     return test::is_about(error, ErrorCode::BadInput, "material", text) && test::says(error, why);
+}
+
+/// Makes the changes and returns the warnings.
+std::vector<Remark> warnings_of_changes(Scene& scene, const std::vector<std::string>& texts) {
+    std::vector<MaterialChange> changes;
+    for (const std::string& text : texts) changes.push_back(parse_material_change(text));
+    Messages messages;
+    set_materials(scene, changes, messages);
+    std::vector<Remark> remarks;
+    for (const Message& message : messages.all()) remarks.push_back(message.remark);
+    return remarks;
 }
 
 } // namespace
@@ -101,6 +114,81 @@ TEST_CASE("names of OpenPBR set the parameters that have others here") {
     CHECK(refuses_change("gold leaf specular_roughness=2", "specular_roughness is a number from 0 to 1"));
     CHECK(refuses_change("gold leaf thin_film_thickness=2000", "thin_film_thickness is a number from 0 to 1048.57"));
     CHECK(refuses_change("gold leaf geometry_thin_walled=2", "geometry_thin_walled is"));
+}
+
+TEST_CASE("OpenPBR's weight of the base and its emission are products") {
+    Scene scene = three_materials();
+    change(scene, "gold leaf base_weight=0.5 base_color=1,0.5,0.25"); // in any order
+    CHECK(scene.materials[0].base_color == Rgb{0.5f, 0.25f, 0.125f});
+    change(scene, "gold ring base_weight=0.25");
+    CHECK(scene.materials[1].base_color == grey(0.125f));
+    change(scene, "gold leaf emission_color=1,0.5,0 emission_luminance=1366"); // nits; 683 lm/W
+    CHECK(scene.materials[0].emission == Rgb{2, 1, 0});
+    const MaterialChange gltf[] = {parse_material_change("gold ring emission_luminance=100")};
+    set_materials(scene, gltf, nobody(), 1);
+    CHECK(scene.materials[1].emission == grey(100));
+    CHECK(refuses_change("gold leaf emission_color=1,0,0", "emission_luminance"));
+    CHECK(refuses_change("gold leaf emission_luminance=-1", "from 0 to"));
+    CHECK(refuses_change("gold leaf emission_luminance=1,1,1", "1 numbers"));
+    CHECK(refuses_change("gold leaf base_weight=1.5", "from 0 to 1"));
+    for (const char* key : {"coat_darkening", "subsurface_weight", "transmission_scatter", "geometry_normal"}) {
+        CHECK(refuses_change(fmt::format("gold leaf {}=1", key), "there is no"));
+    }
+}
+
+TEST_CASE("a diffuse material becomes metallic-roughness for what only that does, unless the value means nothing") {
+    for (const char* value :
+         {"metallic=0", "roughness=1", "ior=1.5", "specular_weight=1", "specular_color=1", "transmission_weight=0.5",
+          "metal_fresnel=f82", "diffuse_transmission_weight=0.8", "specular_retroreflectivity=1", "thin_film_weight=1",
+          "microfacet_distribution=beckmann", "energy=single", "specular_roughness_anisotropy=0.5"}) {
+        CAPTURE(value);
+        Scene scene = three_materials();
+        CHECK(warnings_of_changes(scene, {std::string("gold leaf ") + value}).empty());
+        CHECK(scene.materials[0].kind == MaterialKind::MetallicRoughness);
+    }
+    for (const char* value : {"diffuse_transmission_weight=0", "specular_retroreflectivity=0", "thin_film_weight=0",
+                              "microfacet_distribution=ggx", "energy=compensated", "specular_roughness_anisotropy=0",
+                              "thin_walled=true", "priority=0", "transmission_color=1", "coat_weight=1",
+                              "fuzz_weight=1", "base_diffuse_roughness=1", "emission=1"}) {
+        CAPTURE(value);
+        Scene scene = three_materials();
+        CHECK(warnings_of_changes(scene, {std::string("gold leaf ") + value}).empty());
+        CHECK(scene.materials[0].kind == MaterialKind::Diffuse);
+    }
+}
+
+TEST_CASE("parameters without an effect on the kind of their material are reported, with its name") {
+    const auto warns = [](const std::string& kind, const std::string& value, const std::string& key) {
+        Scene scene = three_materials();
+        const std::string of_kind = "gold leaf kind=" + kind + " " + value;
+        const std::vector<Remark> found = warnings_of_changes(scene, {of_kind});
+        CAPTURE(of_kind);
+        REQUIRE(found.size() == (key.empty() ? 0 : 1));
+        if (key.empty()) return;
+        CHECK(found[0].setting == "material");
+        CHECK(found[0].value == of_kind);
+        for (const std::string& part : {key, "kind=" + kind, std::string("'gold leaf'")})
+            CHECK(found[0].reason.find(part) != std::string::npos);
+    };
+    for (const char* key : {"thin_walled=false", "priority=1", "has_relative_ior=true", "transmission_depth=1"})
+        warns("diffuse", key, std::string(key).substr(0, std::string(key).find('=')));
+    warns("conductor", "specular_weight=0.3", "specular_weight");
+    warns("conductor", "specular_weight=0.3 energy=single", ""); // here it has one
+    warns("conductor", "specular_color=1,0,0 thin_film_weight=1", "specular_color, thin_film_weight have");
+    warns("conductor", "geometry_thin_walled=false", "geometry_thin_walled");
+    warns("conductor", "base_metalness=0", "base_metalness");
+    warns("conductor", "metallic=1 transmission_weight=0 thin_walled=true ior=1.5", "");
+    warns("dielectric", "specular_weight=0.3 specular_color=1,0,0", "specular_weight, specular_color");
+    warns("dielectric", "transmission_weight=0", "transmission_weight"); // all of it transmits
+    warns("dielectric", "transmission_weight=1 thin_walled=false thin_film_weight=1", "");
+    warns("dielectric", "thin_walled=true", "thin_walled");
+    warns("unlit", "emission=1", "emission");
+    warns("unlit", "base_color=1 alpha=0.5", "");
+    Scene scene = three_materials();
+    CHECK(warnings_of_changes(scene, {"gold* thin_walled=false", "gold leaf transmission_weight=1"}).size() == 1);
+    CHECK(scene.materials[0].is_solid());
+    CHECK(warnings_of_changes(scene, {"gold ring kind=conductor", "gold ring eta=1", "gold ring kind=dielectric"})
+              .size() == 1);
 }
 
 TEST_CASE("measured metals reflect as published, and an unknown one is answered with the list") {

@@ -180,7 +180,7 @@ Scene read_scene_and_emitters(const std::filesystem::path& path, const ReadOptio
 void change_materials(const SceneOptions& options, Scene& scene, Sink& sink) {
     std::vector<MaterialChange> changes;
     for (const std::string& text : options.materials) changes.push_back(parse_material_change(text));
-    set_materials(scene, changes, sink);
+    set_materials(scene, changes, sink, lumens_per_watt(options.scene, static_cast<double>(options.efficacy)));
 }
 
 Scene open_scene(const SceneOptions& options, Sink& sink, SceneUse use, Ground ground, const ReadScene& read) {
