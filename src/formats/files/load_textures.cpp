@@ -60,33 +60,18 @@ std::vector<Uses> uses_of(const Scene& scene, std::size_t images) {
     return uses;
 }
 
-/// Stores a picture with 16 bits per channel in `to`: as floats, decoded to linear, or as 8-bit values if it is used
-/// both as values and as colours.
-void put_png16(const Image& image, Uses use, TextureImage& to) {
-    Image rgba = to_rgba(image);
-    const std::size_t count = rgba.pixels.size();
-    if (use.as_srgb && use.as_data) {
-        to.rgba8 = {.width = rgba.width, .height = rgba.height, .pixels = std::vector<uint8_t>(count)};
-        for (std::size_t i = 0; i < count; ++i) to.rgba8.pixels[i] = to_byte(rgba.pixels[i]);
-        return;
-    }
-    if (use.as_srgb) {
-        for (std::size_t i = 0; i < count; ++i) {
-            if (i % 4 != 3) rgba.pixels[i] = srgb_decode(rgba.pixels[i]);
-        }
-    }
-    to.rgba_float = std::move(rgba);
-}
-
-TextureImage texture_of(std::variant<Rgba8Image, Image> image, bool is_png, Uses use, const std::string& name) {
+TextureImage texture_of(std::variant<Rgba8Image, Image> image, bool is_encoded, const std::string& name) {
     TextureImage to;
     to.name = name;
     if (auto* rgba8 = std::get_if<Rgba8Image>(&image)) {
         to.rgba8 = std::move(*rgba8);
-    } else if (is_png) {
-        put_png16(std::get<Image>(image), use, to);
-    } else {
-        to.rgba_float = to_rgba(std::get<Image>(image));
+        return to;
+    }
+    to.rgba_float = to_rgba(std::get<Image>(image));
+    if (!is_encoded) return to;
+    std::vector<float>& values = to.rgba_float.pixels;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (i % 4 != 3) values[i] = srgb_decode(values[i]);
     }
     return to;
 }
@@ -190,6 +175,10 @@ void TextureLoader::decode_within(uint64_t limit) {
     });
 }
 
+bool TextureLoader::is_png16(const Source& source) {
+    return source.image && source.is_png && std::holds_alternative<Image>(*source.image);
+}
+
 void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
     if (missing_ > kMissingNamed) {
         sink_->leave_out(fmt::format("missing: {}", counted(missing_ - kMissingNamed, "further texture")));
@@ -198,16 +187,26 @@ void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
     for (std::size_t i = 0; i < sources_.size(); ++i) sources_[i].is_encoded = uses[i].as_srgb && !uses[i].as_data;
     const uint64_t limit = budget(scene_bytes);
     decode_within(limit);
+    // Floats are linear, so a PNG of 16 bits that is used both as stored and as colours needs an image for each.
+    const auto needs_two = [&](std::size_t i) { return is_png16(sources_[i]) && uses[i].as_srgb && uses[i].as_data; };
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+        if (needs_two(i)) sources_[i].texture_bytes *= 2;
+    }
     check_budget(limit);
 
-    std::vector<TextureImage> textures(sources_.size());
+    std::vector<TextureImage> textures(sources_.size()), decoded(sources_.size());
     parallel_for(sources_.size(), 1, [&](uint64_t i) {
         Source& source = sources_[i];
         if (!source.image) return;
-        textures[i] = texture_of(*std::move(source.image), source.is_png, uses[i], source.name);
+        const bool has_two = needs_two(i), is_encoded = is_png16(source) && uses[i].as_srgb;
+        if (has_two) decoded[i] = texture_of(*source.image, true, source.name);
+        textures[i] = texture_of(*std::move(source.image), is_encoded && !has_two, source.name);
         if (source.color_matrix && uses[i].as_color) convert_colors(*source.color_matrix, textures[i].rgba_float);
     });
-    std::vector<int32_t> renumbered(sources_.size(), kNoImage);
+    struct Numbers {
+        int32_t as_srgb = kNoImage, as_data = kNoImage;
+    };
+    std::vector<Numbers> renumbered(sources_.size());
     for (std::size_t i = 0; i < sources_.size(); ++i) {
         sink_->add_all(sources_[i].messages);
         if (sources_[i].fault) {
@@ -215,12 +214,18 @@ void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
             continue;
         }
         PERTEV_CHECK(sources_[i].image);
-        renumbered[i] = static_cast<int32_t>(scene.images.size());
-        scene.images.push_back(std::move(textures[i]));
+        const auto add = [&](TextureImage& texture) {
+            scene.images.push_back(std::move(texture));
+            return static_cast<int32_t>(scene.images.size() - 1);
+        };
+        renumbered[i].as_data = renumbered[i].as_srgb = add(textures[i]);
+        if (needs_two(i)) renumbered[i].as_srgb = add(decoded[i]);
     }
     for (Material& material : scene.materials) {
         visit_textures(material, [&](TextureRef& ref, const char*) {
-            if (ref.has_image()) ref.image = renumbered.at(static_cast<std::size_t>(ref.image));
+            if (!ref.has_image()) return;
+            const Numbers& numbers = renumbered.at(static_cast<std::size_t>(ref.image));
+            ref.image = ref.is_srgb ? numbers.as_srgb : numbers.as_data;
         });
     }
 }

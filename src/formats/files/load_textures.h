@@ -53,10 +53,11 @@ public:
     /// the loader, and reports nothing yet.
     void decode();
 
-    /// Moves all decoded images into scene.images (empty before). Broken images are left out, each with a warning,
-    /// and the references of scene.materials are renumbered, to kNoImage for a broken one. `scene_bytes` is the size
-    /// of the files that contain embedded images. Throws Error(OverLimit) that names an image if all together would
-    /// take more memory than their files justify; no more than that is allocated before.
+    /// Moves all decoded images into scene.images (empty before); a PNG with 16 bits per channel that is used both as
+    /// colours and as data becomes two. Broken images are left out, each with a warning, and the references of
+    /// scene.materials are renumbered, to kNoImage for a broken one. `scene_bytes` is the size of the files that
+    /// contain embedded images. Throws Error(OverLimit) that names an image if all together would take more memory than
+    /// their files justify; no more than that is allocated before.
     void load_into(Scene& scene, uint64_t scene_bytes = 0);
 
 private:
@@ -76,6 +77,8 @@ private:
         std::optional<Remark> fault; // reason why it cannot be decoded
         Messages messages = {};
     };
+    /// Returns whether the source is a decoded PNG with 16 bits per channel.
+    static bool is_png16(const Source& source);
     void decode_within(uint64_t limit);
     void read(Source& source, uint64_t limit, std::atomic<uint64_t>& all_bytes) const;
     uint64_t texture_bytes(const ImageHeader& header) const;
