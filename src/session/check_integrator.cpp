@@ -10,8 +10,10 @@
 #include "render/film_channels.h"
 #include "render/lens_distortion.h"
 #include "render/raster/pinhole.h"
+#include "session/material_names.h"
 #include "settings/check_settings.h"
 #include "settings/value_names.h"
+#include "shading/lobes/ggx.h"
 
 namespace pertev {
 namespace {
@@ -95,6 +97,33 @@ std::string lights_of(const Scene& scene) {
     return others.empty() ? "this scene has none" : fmt::format("this scene has only {}", others);
 }
 
+/// Reports the materials of which light that is solved between diffuse surfaces leaves a part out.
+void report_unsolved(const RenderSettings& settings, const Scene& scene, Sink& sink) {
+    std::vector<bool> is_used(scene.materials.size());
+    for (const Instance& instance : scene.instances) is_used[instance.material] = true;
+    const auto report = [&](const char* what, const auto& has_part) {
+        std::vector<std::size_t> found;
+        for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+            if (is_used[i] && has_part(scene.materials[i])) found.push_back(i);
+        }
+        if (found.empty()) return;
+        sink.leave_out({"integrator", std::string(integrator_name(settings)),
+                        fmt::format("it {}: {} (`integrator=path` does not)", what, names_of_materials(scene, found))});
+    };
+    const auto is_rough = [](const Material& m) { return m.roughness * m.roughness >= kSmoothAlpha; };
+    report("leaves out the colour of coats", [](const Material& m) {
+        const bool is_tinted = !(m.coat_color == Rgb{1, 1, 1}) || m.coat_color_texture.has_image();
+        return !m.is_unlit() && m.has_coat() && is_tinted;
+    });
+    report("leaves out diffuse transmission", [](const Material& m) { return m.has_diffuse_transmission(); });
+    report("renders rough metal black", [&](const Material& m) {
+        const bool is_whole = m.kind == MaterialKind::MetallicRoughness && m.metallic == 1 && !is_black(m.base_color);
+        return is_rough(m) && (m.kind == MaterialKind::Conductor || (is_whole && !m.metallic_texture.has_image()));
+    });
+    report("renders rough glass black",
+           [&](const Material& m) { return is_rough(m) && m.kind == MaterialKind::Dielectric && m.ior != 1; });
+}
+
 } // namespace
 
 void check_integrator(const RenderSettings& settings) {
@@ -168,6 +197,7 @@ void check_light(const RenderSettings& settings, const Scene& scene, Sink& sink)
                         fmt::format("it renders a vacuum in place of media; {} know them",
                                     list_of(integrator_names(integrators_that(has_media))))});
     }
+    if (describe(settings.integrator).is_solved) report_unsolved(settings, scene, sink);
     if (has_media(scene)) check_media(settings);
     if (const auto why = why_dark(settings, scene)) throw Error(ErrorCode::BadInput, *why);
     const bool is_ambient = needs_punctual_lights(settings.integrator) && settings.ambient;

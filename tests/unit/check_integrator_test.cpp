@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include "render/light_paths/light_path_layers.h"
 #include "session/check_integrator.h"
 #include "tests/support/flat_scenes.h"
@@ -125,4 +127,48 @@ TEST_CASE(
     test::add(scene, test::floor_at(1, 1), {{.emission = {1, 1, 1}}, "lamp"});
     CHECK(is_fine(message(IntegratorKind::Path, scene)));
     CHECK(is_fine(message(IntegratorKind::Radiosity, scene)));
+}
+
+TEST_CASE("radiosity names the materials of which it leaves a part out, and no others") {
+    Scene scene;
+    scene.lights.push_back(test::point_light({0, 2, 0}, {1, 1, 1}));
+    const auto add = [&](const char* name, const auto& change) {
+        Material material = test::white(0.5f);
+        material.name = name;
+        material.kind = MaterialKind::MetallicRoughness;
+        change(material);
+        test::add(scene, test::floor_at(0, 1), material);
+    };
+    const auto left_out = [&](IntegratorKind kind) {
+        RenderSettings settings;
+        settings.integrator = kind;
+        Messages messages;
+        check_light(settings, scene, messages);
+        std::vector<std::string> reasons;
+        for (const Message& message : messages.all()) {
+            CHECK(message.is_left_out);
+            reasons.push_back(message.remark.reason);
+        }
+        return reasons;
+    };
+    add("plain", [](Material&) {});
+    add("clear coat", [](Material& m) { m.coat_weight = 1; });
+    add("no coat", [](Material& m) { m.coat_color = {1, 0, 0}; });
+    add("mirror", [](Material& m) { m.metallic = 1, m.roughness = 0.03f; });
+    add("black", [](Material& m) { m.metallic = 1, m.base_color = {0, 0, 0}; });
+    add("glass", [](Material& m) { m.kind = MaterialKind::Dielectric, m.roughness = 0; });
+    CHECK(left_out(IntegratorKind::Radiosity).empty());
+    scene.materials.push_back(scene.materials[1]);
+    scene.materials.back().coat_color = {0, 1, 0}; // no surface has it
+    CHECK(left_out(IntegratorKind::Radiosity).empty());
+    add("red coat", [](Material& m) { m.coat_weight = 1, m.coat_color = {1, 0, 0}; });
+    add("leaf", [](Material& m) { m.diffuse_transmission_weight = 0.5f; });
+    add("gold", [](Material& m) { m.kind = MaterialKind::Conductor; });
+    add("tin", [](Material& m) { m.metallic = 1; });
+    add("frosted", [](Material& m) { m.kind = MaterialKind::Dielectric; });
+    const std::vector<std::string> reasons = left_out(IntegratorKind::Radiosity);
+    REQUIRE(reasons.size() == 4);
+    const char* const expected[] = {"'red coat'", "'leaf'", "'gold', 'tin'", "'frosted'"};
+    for (std::size_t i = 0; i < 4; ++i) CHECK(reasons[i].find(fmt::format(": {} (", expected[i])) != std::string::npos);
+    CHECK(left_out(IntegratorKind::Path).empty());
 }
