@@ -81,7 +81,7 @@ class Render(unittest.TestCase):
 
     def test_the_albedo_of_a_conductor_is_its_reflectance_at_normal_incidence(self):
         eta, k = numpy.array([0.2, 0.9, 1.1]), numpy.array([3.9, 2.4, 1.9])
-        metal = f"white eta={','.join(map(str, eta))} k={','.join(map(str, k))} kind=conductor"
+        metal = f"white kind=conductor eta={','.join(map(str, eta))} k={','.join(map(str, k))}"
         before, after = (pertev.render("cornell-box", size=(16, 16), spp=1, layers=["albedo"], layers_at="centre", material=material).albedo
                          for material in ([], [metal]))
         changed = (before != after).any(-1)
