@@ -124,16 +124,29 @@ class Scene(_core.Scene):
 def scene_of(scene):
     """Returns a Scene for what render() takes as one."""
     if isinstance(scene, Scene):
+        getattr(scene, "name")  # An _Unopened scene raises its error here.
         return scene
     if not isinstance(scene, (str, os.PathLike)):
         raise TypeError(f"scene: expected what pertev.load() returns, a file, or the name of a built-in scene, not {type(scene).__name__}")
     return Scene(scene)
 
 
+class _Unopened(Scene):
+    """A pickled scene that could not be opened. Its first use raises the error of that, since unpickling must not: the worker of a
+    multiprocessing.Pool whose argument raises ends without an answer, and the pool waits without end."""
+
+    def __getattribute__(self, name):
+        raise object.__getattribute__(self, "_error")
+
+
 def _reopened(name, settings, edits):
-    scene = load(name, **settings)
-    for path, value in edits.items():
-        scene.params[path] = value
+    try:
+        scene = load(name, **settings)
+        for path, value in edits.items():
+            scene.params[path] = value
+    except Exception as error:
+        scene = _Unopened.__new__(_Unopened)
+        scene._error = error
     return scene
 
 

@@ -71,6 +71,23 @@ class Processes(unittest.TestCase):
             with multiprocessing.get_context("spawn").Pool(2) as pool:
                 self.assertEqual(pool.map(hash_of, [scene, scene]), [expected] * 2)
 
+    def test_a_forked_pool_whose_argument_is_a_scene_raises_the_error(self):
+        done = run_python("import multiprocessing, pertev\ndef hash_of(scene):\n    return pertev.render(scene, size=(4, 4), spp=1).hash\n"
+                          "def name_of(scene):\n    return scene.name\n"
+                          "scene = pertev.load('cornell-box', device='cpu', max_depth=2)\nscene.params['materials/red/base_color'] = (0, 0, 1)\n"
+                          "with multiprocessing.get_context('fork').Pool(1) as pool:\n    for call in (hash_of, name_of):\n"
+                          "        try:\n            pool.map(call, [scene])\n        except pertev.DeviceError as error:\n            print('spawn' in str(error))\n")
+        self.assertEqual(done.stdout.split(), ["True", "True"], done.stderr)
+
+    def test_a_pickled_scene_that_is_gone_raises_the_error_at_its_first_use(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pertev.scene("cornell-box", device="cpu").save(f"{folder}/a.glb")
+            pickled = pickle.dumps(pertev.load(f"{folder}/a.glb", device="cpu"))
+        scene = pickle.loads(pickled)
+        for use in (hash_of, pertev.Session, lambda scene: scene.params, lambda scene: scene.bounds):
+            with self.assertRaises(pertev.MissingFileError):
+                use(scene)
+
     def test_importing_is_quick_and_loads_no_driver(self):
         with tempfile.TemporaryDirectory() as folder:  # a library that CUDA's loader would find
             shutil.copy(next(line.split()[-1] for line in pathlib.Path("/proc/self/maps").read_text().splitlines() if "/libm.so" in line),
