@@ -3,6 +3,7 @@
 import math
 import operator
 import os
+import re
 from collections.abc import Mapping
 
 from . import _core
@@ -19,6 +20,7 @@ ARGUMENTS = ("cameras", "color", "on_device", "out", "output", "seeds", "setting
 SEPARATORS = {"A:B": ":", "I/N": "/"}  # by the form of a value
 TOO_LARGE = "the number is too large"
 MATRICES = {"camera_pose": ((4, 4), (3, 4)), "intrinsics": ((3, 3),)}  # shapes of settings that may have rows
+OTHER_AOV = re.compile(r"\b((?:needs|cannot be combined with) `?)aov\b")
 BOOLS = ("bool", "bool_")  # names in Python and NumPy 2, and in NumPy 1
 
 
@@ -173,7 +175,8 @@ def with_layers(values, layers):
 
 
 class of_layers:
-    """Errors about `aov` in this block are about `layers` if the call's layers came by that argument alone."""
+    """Errors in this block say `layers` for `aov`, as a setting or as one that another needs or excludes, unless the call
+    has `aov`."""
 
     def __init__(self, values):
         self._values = values
@@ -182,5 +185,9 @@ class of_layers:
         pass
 
     def __exit__(self, kind, error, trace):
-        if isinstance(error, Error) and error.setting == "aov" and self._values.get("aov") is None:
+        if not isinstance(error, Error) or error.file or self._values.get("aov") is not None:
+            return
+        if error.setting == "aov":
             error.setting, error.args = "layers", (str(error).replace("aov", "layers", 1),)
+        error.reason, text = (OTHER_AOV.sub(r"\1layers", text) for text in (error.reason, str(error)))
+        error.args = (text,)

@@ -204,6 +204,15 @@ class Errors(unittest.TestCase):
                 error = self.refused(pertev.InputError, setting, lambda: pertev.render(self.scene, **{**SMALL, **values}))
                 self.assertNotIn("--", str(error))
 
+    def test_errors_say_layers_unless_the_call_has_aov(self):
+        for setting, values in [("layers_at", {"layers_at": "centre"}), ("layers_at", {"layers": "uv", "layers_at": "centre"}), ("denoise", {"layers": "variance", "denoise": "svgf"})]:
+            error = self.refused(pertev.InputError, setting, lambda: pertev.render(self.scene, **SMALL, **values))
+            for text in (str(error), error.reason):
+                self.assertRegex(text, r"\blayers\b")
+                self.assertNotIn("aov", text)
+        error = self.refused(pertev.InputError, "layers_at", lambda: pertev.render(self.scene, **SMALL, aov="uv", layers_at="centre"))
+        self.assertIn("aov='uv'", str(error))
+
     def test_arrays_of_wrong_shape_type_or_device_are_refused(self):
         mesh = {"vertices": numpy.eye(3), "faces": numpy.array([[0, 1, 2]])}
         picture, folder = numpy.zeros((4, 4, 3), numpy.float32), self.enterContext(tempfile.TemporaryDirectory())
