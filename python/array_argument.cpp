@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "base/error.h"
+#include "python/unlocked.h"
 
 namespace nb = nanobind;
 
@@ -98,7 +99,7 @@ template <class From, class To>
 std::vector<To> ArrayArgument::values_of() const {
     std::vector<To> values;
     // A short copy keeps the interpreter's lock, because another thread may hold it for milliseconds.
-    std::optional<nb::gil_scoped_release> unlocked;
+    std::optional<Unlocked> unlocked;
     if (array_.size() >= 1 << 16) unlocked.emplace();
     values.reserve(array_.size());
     const From* const from = static_cast<const From*>(array_.data());

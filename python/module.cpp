@@ -2,6 +2,7 @@
 // (python/pertev/__init__.py) makes texts of Python's values.
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <set>
 #include <type_traits>
@@ -352,7 +353,9 @@ cameras_of_file(const std::string& path, uint32_t width, uint32_t height) {
 
 /// Returns the folder of the package pyoidn that `import pyoidn` would find now; empty if there is none.
 std::string folder_of_pyoidn() {
-    const nb::gil_scoped_acquire lock;
+    const auto release = [](const PyGILState_STATE* state) { PyGILState_Release(*state); };
+    const PyGILState_STATE state = take_lock(&PyGILState_Ensure);
+    const std::unique_ptr<const PyGILState_STATE, decltype(release)> lock(&state, release);
     try {
         const nb::object found = nb::module_::import_("importlib.util").attr("find_spec")("pyoidn");
         if (found.is_none() || found.attr("submodule_search_locations").is_none()) return "";

@@ -14,7 +14,7 @@ namespace pertev {
 
 bool PythonSink::should_stop() {
     if (has_raised_) return true;
-    if (std::this_thread::get_id() != caller_) return false;
+    if (!is_main_ || std::this_thread::get_id() != caller_) return false;
     const Clock::time_point now = Clock::now();
     if (now - asked_ < std::chrono::milliseconds(20)) return false;
     asked_ = now;

@@ -3,6 +3,8 @@
 // The sink of a call from Python. The call's work runs without the interpreter's lock and ends by Ctrl-C, and its
 // messages go to Python's `logging` once the call has the lock again.
 
+#include <unistd.h>
+
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -14,7 +16,7 @@ namespace pertev {
 class PythonSink final : public Messages {
 public:
     /// Returns whether a signal's handler has raised an exception, which is then the calling thread's. Only that
-    /// thread asks the interpreter, at most every 20 ms.
+    /// thread asks the interpreter, at most every 20 ms, and only if it is the main one, which alone gets signals.
     bool should_stop() override;
     /// Returns whether a handler has raised an exception, which is to be thrown on.
     bool has_raised() const { return has_raised_; }
@@ -23,6 +25,7 @@ private:
     using Clock = std::chrono::steady_clock;
 
     const std::thread::id caller_ = std::this_thread::get_id();
+    const bool is_main_ = ::gettid() == ::getpid();
     Clock::time_point asked_ = Clock::now();
     std::atomic<bool> has_raised_ = false;
 };

@@ -10,10 +10,36 @@
 #include <utility>
 
 #include <nanobind/nanobind.h>
+#include <unistd.h>
 
 #include "python/python_sink.h"
 
 namespace pertev {
+
+/// Calls `take`, which gets the interpreter's lock. An interpreter that is ending unwinds any thread but its own that
+/// asks for the lock, and what calls here must not be unwound, so such a thread waits for the end of the process.
+template <class Take>
+auto take_lock(const Take& take) {
+    try {
+        return take();
+    } catch (...) {
+        while (true) ::pause();
+    }
+}
+
+/// Releases the interpreter's lock while it lives.
+class Unlocked {
+public:
+    Unlocked() : state_(PyEval_SaveThread()) {}
+    ~Unlocked() {
+        take_lock([&] { PyEval_RestoreThread(state_); });
+    }
+    Unlocked(const Unlocked&) = delete;
+    Unlocked& operator=(const Unlocked&) = delete;
+
+private:
+    PyThreadState* state_;
+};
 
 /// Calls `work` without the interpreter's lock, and then logs its messages. Throws what it throws, or what a signal's
 /// handler raised.
@@ -22,7 +48,7 @@ void run_unlocked(Work work) {
     PythonSink sink;
     std::exception_ptr failure;
     {
-        const nanobind::gil_scoped_release unlocked;
+        const Unlocked unlocked;
         try {
             work(sink);
         } catch (...) {

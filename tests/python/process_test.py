@@ -88,6 +88,14 @@ class Processes(unittest.TestCase):
             with self.assertRaises(pertev.MissingFileError):
                 use(scene)
 
+    def test_python_ends_while_daemon_threads_render(self):
+        for size, spp in (((800, 600), 4000), ((4, 4), 1)):  # one long picture, and many that begin and end
+            with self.subTest(size):
+                done = run_python("import pertev, threading, time\nscene = pertev.load('cornell-box', device='cpu')\ndef work():\n    while True:\n"
+                                  f"        pertev.render(scene, size={size}, spp={spp})\n"
+                                  "for _ in range(3):\n    threading.Thread(target=work, daemon=True).start()\ntime.sleep(0.4)\n")
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+
     def test_importing_is_quick_and_loads_no_driver(self):
         with tempfile.TemporaryDirectory() as folder:  # a library that CUDA's loader would find
             shutil.copy(next(line.split()[-1] for line in pathlib.Path("/proc/self/maps").read_text().splitlines() if "/libm.so" in line),
