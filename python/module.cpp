@@ -40,6 +40,7 @@
 #include "scene/validate/validate.h"
 #include "session/degrees.h"
 #include "session/photometry.h"
+#include "session/pictures/check_options.h"
 #include "session/pictures/merge_picture.h"
 #include "settings/setting_table.h"
 
@@ -316,7 +317,8 @@ void define_scene(nb::module_& module) {
             "__init__",
             [](PythonSession* session, PythonScene& scene, SettingTexts settings) {
                 Messages unsaid; // the first frame reports them
-                scene.options_of({"", settings}, unsaid);
+                PictureOptions options = scene.options_of({"", settings}, unsaid);
+                complete_options(options, kRender);
                 new (session) PythonSession(scene, std::move(settings));
             },
             nb::keep_alive<1, 2>())

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "python/unlocked.h"
+#include "session/pictures/check_options.h"
 #include "session/pictures/frame_settings.h"
 #include "session/pictures/render_sequence.h"
 
@@ -18,7 +19,8 @@ void PythonSession::set(const SettingTexts& settings, Sink& sink) {
         }
     }
     PartMessages unsaid(sink); // the next frame reports them
-    scene_.options_of({"", changed}, unsaid);
+    PictureOptions options = scene_.options_of({"", changed}, unsaid);
+    complete_options(options, kRender);
     std::swap(settings_, changed);
     record_.reset();
     if (opened_.setup() == nullptr) return;

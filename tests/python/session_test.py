@@ -168,7 +168,8 @@ class Sessions(unittest.TestCase):
         with self.assertRaises(TypeError):
             pertev.Session("cornell-box", fpss=3)
         scene = pertev.load("cornell-box", device=DEVICE)
-        for setting, values in [("spp", {"spp": "deep"}), ("real_time", {"transparent": True}), ("layers", {"layers": "deepness"})]:
+        for setting, values in [("spp", {"spp": "deep"}), ("real_time", {"transparent": True}), ("layers", {"layers": "deepness"}),
+                                ("frames", {"frames": "9-3"}), ("spp", {"spp": 4}), ("layers", {"layers": "uv"})]:
             with self.assertRaises(pertev.InputError) as caught:
                 pertev.Session(scene, **SMALL, **values)
             self.assertEqual(caught.exception.setting, setting)
@@ -188,8 +189,9 @@ class Sessions(unittest.TestCase):
                 frames.append(next(session).hash) # with the history of the first
                 self.assertEqual(frames, expected)
         session = pertev.Session("cornell-box", **SMALL) # its scene is not open yet
-        with self.assertRaises(pertev.InputError):
-            session.set(spp=-1)
+        for values in ({"spp": -1}, {"spp": 4}, {"frames": "9-3"}):
+            with self.assertRaises(pertev.InputError):
+                session.set(**values)
         self.assertEqual([next(session).hash for _ in range(2)], expected)
 
 

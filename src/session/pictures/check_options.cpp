@@ -76,4 +76,10 @@ void check_options(const PictureOptions& options, uint32_t verbs) {
     check_solution(options.radiosity.solution);
 }
 
+void complete_options(PictureOptions& options, uint32_t verbs) {
+    if (options.real_time && !options.is_given("spp")) options.render.samples = 1;
+    if (!options.samples.empty()) options.render.samples = sample_range(options).end;
+    check_options(options, verbs);
+}
+
 } // namespace pertev

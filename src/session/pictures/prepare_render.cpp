@@ -24,7 +24,6 @@
 #include "session/pictures/check_options.h"
 #include "session/pictures/frame_settings.h"
 #include "session/render_memory.h"
-#include "session/sample_range.h"
 #include "session/session_bytes.h"
 #include "session/survey/ground.h"
 #include "settings/check_settings.h"
@@ -50,13 +49,6 @@ Ground ground_of(const PictureOptions& options) {
 void check_film(const PictureOptions& options, const RenderSettings& settings, const Queue& queue) {
     const std::size_t film = predicted_film_bytes(settings);
     check_render_memory(film, settings, memory_to_render_in(queue, settings, max_memory_bytes(options.radiosity)));
-}
-
-/// Checks the options. A frame in real time has one sample by default, and a picture of `samples` all before their end.
-void check(PictureOptions& options, uint32_t verbs) {
-    if (options.real_time && !options.is_given("spp")) options.render.samples = 1;
-    if (!options.samples.empty()) options.render.samples = sample_range(options).end;
-    check_options(options, verbs);
 }
 
 /// Returns the picture's settings, after `options` have taken what the scene's file suggests.
@@ -204,7 +196,7 @@ bool adapt_setup(RenderSetup& ready, const PictureOptions& before, PictureOption
         if (setting.changes == Changes::Scene) return false;
         has_same_camera = false;
     }
-    check(options, verbs);
+    complete_options(options, verbs);
     if (options.strict) refuse_what_is_left_out(sink.messages(), "nothing was rendered");
     PictureOptions taken = options;
     apply_camera_from(taken);
@@ -249,7 +241,7 @@ bool adapt_setup(RenderSetup& ready, const PictureOptions& before, PictureOption
 
 std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t verbs, Sink& sink,
                                             const SolveReport& report, const SceneInMemory& in_memory) {
-    check(options, verbs);
+    complete_options(options, verbs);
     read_camera_list(options);
     apply_camera_from(options);
     std::optional<CameraPath> path;
