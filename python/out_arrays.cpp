@@ -59,6 +59,14 @@ std::string dtype_name(nb::dlpack::dtype type) {
     return fmt::format("{}{}", kind, type.bits);
 }
 
+constexpr const char* kReadOnly = "the array is read-only; expected one that can be written";
+
+/// Returns whether the value is an array of JAX, none of which may change, though their DLPack does not say so.
+bool is_of_jax(nb::handle value) {
+    const nb::object module = nb::getattr(value.type(), "__module__", nb::none());
+    return nb::isinstance<nb::str>(module) && std::string_view(nb::str(module).c_str()).starts_with("jax");
+}
+
 /// Returns why an array that is no writable one of the host in the order of C cannot be filled.
 std::string fault_of_array(nb::handle value) {
     nb::ndarray<nb::ro> array;
@@ -73,7 +81,7 @@ std::string fault_of_array(nb::handle value) {
     if (array.device_type() != nb::device::cpu::value)
         return "the array is on another device; expected one in the CPU's memory";
     nb::ndarray<nb::device::cpu> writable;
-    if (!nb::try_cast(value, writable, false)) return "the array is read-only; expected one that can be written";
+    if (!nb::try_cast(value, writable, false)) return kReadOnly;
     return "the array is not C-contiguous; expected rows one after the other, without gaps";
 }
 
@@ -116,6 +124,10 @@ std::vector<OutArray> out_arrays(const nb::dict& out) {
         OutArray& made = arrays.emplace_back();
         made.name = text_argument(key, "out");
         made.array = nb::borrow(value);
+        if (is_of_jax(value)) {
+            made.fault = kReadOnly;
+            continue;
+        }
         nb::ndarray<nb::c_contig, nb::device::cpu> array;
         if (!nb::try_cast(value, array, false)) {
             made.fault = fault_of_array(value);

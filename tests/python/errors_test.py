@@ -41,6 +41,14 @@ class Elsewhere:
         return (2, 0)
 
 
+class OfJax:
+    """An array that must not change, which its DLPack does not say."""
+    __module__ = "jaxlib._jax"
+
+    def __init__(self, array):
+        self.__dlpack__, self.__dlpack_device__ = array.__dlpack__, array.__dlpack_device__
+
+
 def after(seconds):
     """Presses Ctrl-C."""
     threading.Timer(seconds, lambda: signal.raise_signal(signal.SIGINT)).start()
@@ -315,7 +323,7 @@ class Errors(unittest.TestCase):
                             (numpy.empty((6, 8, 3)), "float64; expected float32"), (numpy.empty((6, 8, 3), bool), "bool; expected"), (numpy.empty((6, 8, 3), "u1"), "uint8; expected"),
                             (whole[:, :, ::2], "not C-contiguous"), (numpy.asfortranarray(whole[:, :, :3]), "not C-contiguous"),
                             (Elsewhere(whole[:, :, :3].copy()), "is on cuda:0; expected one in the CPU's memory"), (read_only, "read-only"), (unaligned, "multiple of 4"),
-                            (numpy.empty((6, 8, 3), ">f4"), "ndarray of >f4 is not"), ([1, 2], "list is not an array"), (None, "NoneType is not an array")]:
+                            (numpy.empty((6, 8, 3), ">f4"), "ndarray of >f4 is not"), (OfJax(whole[:, :, :3].copy()), "read-only"), ([1, 2], "list is not an array"), (None, "NoneType is not an array")]:
             error = self.refused(pertev.InputError, "out", lambda: pertev.render(self.scene, **SMALL, out={"color": wrong}))
             self.assertEqual(error.value, "color")
             self.assertRegex(error.reason, says)
