@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nanobind/stl/string.h>
 
 #include "base/error.h"
 #include "python/unlocked.h"
@@ -50,14 +51,28 @@ struct Half {
     }
 };
 
+/// Returns an array of NumPy with numbers in the byte order of the machine, and long doubles as float64, as DLPack has
+/// them.
+nb::object in_native_type(const nb::object& array) {
+    const nb::object dtype = array.attr("dtype");
+    const auto kind = nb::cast<std::string>(dtype.attr("kind"));
+    if (kind != "f" && kind != "i" && kind != "u") return array;
+    const bool is_long = nb::cast<std::size_t>(dtype.attr("itemsize")) > sizeof(double);
+    const nb::object type = is_long ? nb::str("f8") : nb::object(dtype.attr("newbyteorder")("="));
+    return array.attr("astype")(type, nb::arg("copy") = false);
+}
+
 } // namespace
 
 ArrayArgument::ArrayArgument(nb::handle value, std::string name) : name_(std::move(name)) {
     if (!nb::try_cast(value, array_)) {
         try {
-            const nb::object made = nb::module_::import_("numpy").attr("asarray")(value);
-            if (!nb::try_cast(made, array_))
-                fail(fmt::format("{} is not an array of numbers", nb::type_name(value.type()).c_str()));
+            const nb::object made = in_native_type(nb::module_::import_("numpy").attr("asarray")(value));
+            if (!nb::try_cast(made, array_)) {
+                const nb::str dtype(nb::object(made.attr("dtype")));
+                fail(fmt::format("{} of {} is not an array of numbers", nb::type_name(value.type()).c_str(),
+                                 dtype.c_str()));
+            }
         } catch (nb::python_error& error) {
             fail(fmt::format("not an array of numbers: {}", error.what()));
         }

@@ -212,7 +212,8 @@ std::optional<Environment> environment_of(nb::handle value) {
         const std::vector<float> color = array.floats();
         environment.scale = {color[0], color[1], color[2]};
     } else {
-        array.of_shape({ArrayArgument::kAny, ArrayArgument::kAny, 3});
+        if (!array.has_shape({ArrayArgument::kAny, ArrayArgument::kAny, 3}))
+            array.fail("expected the shape (3,) or (height, width, 3)");
         if (array.is_whole()) array.fail("the array's dtype is no float; a radiance is");
         environment.image = {static_cast<uint32_t>(array.length(1)), static_cast<uint32_t>(array.length(0)), 3,
                              array.floats()};

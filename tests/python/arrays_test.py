@@ -71,6 +71,7 @@ class Arrays(unittest.TestCase):
         for vertices, faces in ((VERTICES.astype(numpy.float64), FACES.astype(numpy.uint16)),
                                 (numpy.asfortranarray(VERTICES), FACES.astype(numpy.int32)),
                                 (VERTICES.astype(numpy.float16), FACES.tolist()), (read_only, FACES),
+                                (VERTICES.astype(">f4"), FACES.astype(">i8")), (VERTICES.astype(numpy.longdouble), FACES.astype(">u2")),
                                 (VERTICES.tolist(), FACES), (numpy.repeat(VERTICES, 2, 0)[::2], FACES)):
             mesh = {"vertices": vertices, "faces": faces, "uv": UV}
             self.assertEqual(pertev.render(pertev.Scene(**parts(meshes={"floor": mesh})), **SMALL).hash, expected)
@@ -165,6 +166,10 @@ class Arrays(unittest.TestCase):
             "cameras/front/aperture_blades": parts(cameras={"front": {"eye": (0, 0, 1), "target": (0, 0, 0), "aperture_blades": 2}}),
             "environment": parts(environment=numpy.full((4, 8, 3), -1.0)),
             "meshes": parts(meshes=[mesh])}
+        with self.assertRaisesRegex(pertev.InputError, r"\(height, width, 3\)"):
+            pertev.Scene(**parts(environment=numpy.ones((4, 8, 4))))
+        with self.assertRaisesRegex(pertev.InputError, "<U1"):
+            pertev.Scene(**parts(meshes={"floor": {**mesh, "vertices": numpy.full((4, 3), "a")}}))
         wrong_types = parts(meshes={"floor": {**mesh, "faces": FACES.astype(numpy.float32)}})
         for name, arguments in [*wrong.items(), ("meshes/floor/faces", wrong_types)]:
             with self.subTest(name):
