@@ -139,7 +139,8 @@ std::string PythonBatch::misfit(const RenderSettings& settings, const CamerasArg
     for (const BatchArrays::Layer& layer : arrays_.layers) groups |= layer.group;
     if (arrays_.ids.size() > 0) groups |= kAovIds;
     const uint32_t channels = color_channels_of(settings);
-    if (&queue != queue_.get()) return "the arrays belong to another scene or device";
+    if (&queue != queue_.get())
+        return "the arrays belong to another scene or device, or to the scene before it was opened again";
     if (cameras.is_single != is_single_)
         return is_single_ ? "the arrays are of one picture, without `cameras`" : "the arrays are of many `cameras`";
     if (cameras.count() != arrays_.pictures)

@@ -75,6 +75,7 @@ nb::object array_named(nb::handle self, const Arrays& of, const std::string& nam
     for (const PythonBatch::Array& array : of.all) {
         if (array.name == name) return array_of(of, array, self);
     }
+    if (name == "color") throw nb::attribute_error("there is no array 'color'; request it by color=True");
     throw nb::attribute_error(fmt::format("there is no array '{}'; request it by layers=['{}']", name, name).c_str());
 }
 
@@ -150,7 +151,11 @@ nb::object noisy_of(nb::handle self) {
     return array_named(self, of, is_denoised ? "noisy" : "color");
 }
 
-PythonResult picture_of(const PythonBatch& batch, int64_t number) {
+PythonResult picture_of(const PythonBatch& batch, nb::handle index) {
+    if (PyIndex_Check(index.ptr()) == 0)
+        throw nb::type_error(fmt::format("number: expected a whole number, not {}", nb::repr(index).c_str()).c_str());
+    const int64_t number = PyNumber_AsSsize_t(index.ptr(), PyExc_IndexError);
+    if (number == -1 && PyErr_Occurred() != nullptr) throw nb::python_error();
     return in_turn(batch, [&] {
         const auto count = static_cast<int64_t>(batch.count());
         if (number < -count || number >= count)
@@ -257,7 +262,9 @@ of them does. The first axis counts the cameras (a single picture has no such ax
         .def_prop_ro(
             "samples", [](const PythonBatch& self) { return in_turn(self, [&] { return self.samples(); }); },
             "Samples of each pixel")
-        .def("picture", &picture_of, nb::arg("number") = 0, "A copy of one picture as a Result, in the host's memory")
+        .def("picture", &picture_of, nb::arg("number").none() = 0,
+             nb::sig("def picture(self, number: int = 0) -> Result"),
+             "A copy of one picture as a Result, in the host's memory")
         .def("_repr_png_", &png_of_batch)
         .def("__reduce__",
              [](const PythonBatch&) -> nb::object {

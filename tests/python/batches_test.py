@@ -169,7 +169,11 @@ class Batches(unittest.TestCase):
                 self.assertTrue(numpy.array_equal(getattr(picture, name), getattr(alone, name)), name)
             self.assertEqual({name: value for name, value in picture.info.items() if name not in OF_A_RUN},
                              {name: value for name, value in alone.info.items() if name not in OF_A_RUN})
-        for number in (3, -4):
+        self.assertEqual(batch.picture(numpy.int8(2)).hash, batch.picture(number=2).hash)
+        for number in (1.5, "1", None):
+            with self.assertRaisesRegex(TypeError, "^number: "):
+                batch.picture(number)
+        for number in (3, -4, 2**80):
             with self.assertRaises(IndexError):
                 batch.picture(number)
         self.assertTrue(batch._repr_png_().startswith(b"\x89PNG"))
@@ -189,6 +193,11 @@ class Batches(unittest.TestCase):
         pertev.render(self.scene, cameras=POSES, denoise="svgf", out=batch, **SMALL)
         self.assertEqual(host(batch.noisy).tobytes(), noisy.tobytes())
 
+    def test_arrays_of_a_scene_that_was_opened_again_are_refused(self):
+        batch = pertev.render(self.scene, cameras=POSES, environment=(1, 1, 1), **SMALL)
+        with self.assertRaisesRegex(pertev.InputError, "opened again"):
+            pertev.render(self.scene, cameras=POSES, out=batch, **SMALL)
+
     def test_without_colour_there_is_no_hash(self):
         batch = pertev.render(self.scene, cameras=POSES, color=False, layers="depth", layers_at="centre", size=(20, 16))
         with self.assertRaises(AttributeError):
@@ -197,6 +206,9 @@ class Batches(unittest.TestCase):
         self.assertIsNone(batch._repr_png_())
         with self.assertRaises(AttributeError):
             batch.picture(0)
+        for name in ("color", "noisy"):
+            with self.assertRaisesRegex(AttributeError, "request it by color=True"):
+                getattr(batch, name)
         self.assertEqual((batch.samples, batch.pose.shape), (0, (3, 4, 4)))
 
     def test_cameras_of_a_file_are_rendered(self):
