@@ -134,6 +134,7 @@ PythonResult PythonScene::render(const CallSettings& settings, const std::vector
     PythonResult made = is_read ? render_into(session, out, sink)
                                 : PythonResult(kept ? kept->render(sink) : render_samples(session, sink), record_);
     sink.check();
+    if (made.result.samples == 0) sink.warn({"this part has no samples, so its picture is black"});
     WrittenPicture written;
     if (!outputs.empty()) {
         RenderResult result = made.result; // files take the layers out of it

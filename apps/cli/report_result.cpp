@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <cmath>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -49,16 +50,19 @@ std::string hashes_json(const WrittenPicture& written) {
 void report_result(const RenderResult& result, uint64_t pixels, const WrittenPicture& written, const Queue& queue,
                    const std::string& device, double total_seconds, bool interrupted, Reporter& reporter) {
     const double samples = static_cast<double>(pixels) * result.samples;
-    const double samples_per_second = samples / result.render_seconds;
+    const double samples_per_second = samples > 0 ? samples / result.render_seconds : std::nan(""); // JSON: null
     const double rays_per_second = static_cast<double>(result.rays.total()) / result.render_seconds;
     const double frame_seconds = result.render_seconds / result.samples; // one sample of every pixel
     const uint64_t host_bytes = peak_memory_bytes();
     if (result.samples == 0) reporter.print("this part has no samples");
+    const std::string rates =
+        result.samples == 0
+            ? ""
+            : fmt::format(" {:.4g} s per frame of 1 spp ({:.4g} frames/s), {:.2f} Msamples/s, {:.1f} Mrays/s,",
+                          frame_seconds, 1 / frame_seconds, samples_per_second * 1e-6, rays_per_second * 1e-6);
     reporter.print(fmt::format(
-        "{} spp in {:.2f} s ({:.2f} s in total), {:.4g} s per frame of 1 spp ({:.4g} frames/s), {:.2f} Msamples/s, "
-        "{:.1f} Mrays/s, peak {:.0f} MiB{}, {}, picture {}{}",
-        result.samples, result.render_seconds, total_seconds, frame_seconds, 1 / frame_seconds,
-        samples_per_second * 1e-6, rays_per_second * 1e-6, mebibytes(host_bytes),
+        "{} spp in {:.2f} s ({:.2f} s in total),{} peak {:.0f} MiB{}, {}, picture {}{}", result.samples,
+        result.render_seconds, total_seconds, rates, mebibytes(host_bytes),
         queue.is_cuda() ? fmt::format(" and {:.0f} MiB on the GPU", mebibytes(result.device_peak_bytes)) : "",
         counted(result.invalid_samples, "invalid sample"), written.hash,
         result.denoised ? fmt::format(" (before denoising; the files are denoised{}{})",

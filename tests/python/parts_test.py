@@ -107,6 +107,14 @@ class Parts(unittest.TestCase):
         numpy.testing.assert_array_equal(some.color[:4], pertev.render(self.scene, spp=3, **SMALL).color[:4])
         self.assertFalse(some.color[4:].any())
 
+    def test_a_part_without_samples_is_black_and_warned_of(self):
+        with self.assertLogs("pertev", "WARNING") as logged:
+            part = pertev.render(self.scene, spp=1, part=(1, 4), **SMALL)
+        self.assertEqual((part.samples, part.color.any(), len(logged.output)), (0, False, 1))
+        self.assertIn("no samples", logged.output[0])
+        with self.assertNoLogs("pertev", "WARNING"):
+            self.assertEqual(pertev.render(self.scene, spp=1, part=(4, 4), **SMALL).samples, 1)
+
     def test_a_part_does_not_open_the_scene_again(self):
         pertev.render(self.scene, spp=2, **SMALL)
         before = pertev.render(self.scene, spp=2, **SMALL).info["build_seconds"]

@@ -267,7 +267,11 @@ class Merge(CliTest):
     def test_a_part_is_a_range_of_samples_and_may_be_empty(self):
         whole = self.part("alone.exr", "--spp", "3")
         names = self.parts(5, "--spp", "3")
-        self.assertEqual(self.part("again.pvf", "--spp", "3", "--part", "1/5")["samples"], 0)
+        empty = self.part("again.pvf", "--spp", "3", "--part", "1/5")
+        self.assertEqual((empty["samples"], empty["seconds_per_frame"], empty["samples_per_second"]), (0, None, None))
+        said = self.succeed("render", "cornell-box", "-o", "again.pvf", *SMALL, "--spp", "3", "--part", "1/5").stderr
+        self.assertIn("no samples", said)
+        self.assertNotRegex(said, "nan|inf|per frame")
         self.assertEqual(self.merge(*names, "-o", "all.exr")["hash"], whole["hash"])
         for i in range(3):
             self.assertEqual(self.part(f"{i}.pvf", "--spp", "3", "--part", f"{i}/3", "--part-base", "0")["samples"], 1)
