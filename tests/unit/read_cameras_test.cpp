@@ -174,6 +174,19 @@ TEST_CASE("COLMAP's binary files give the same cameras as its text files") {
     CHECK(Colmap(cameras, many, ".bin").fault().first == "images.bin");
 }
 
+TEST_CASE("COLMAP's workspaces give the cameras of their first model") {
+    const Colmap model(kColmapCameras, "1 1 0 0 0 0 0 0 1 a.jpg\n\n");
+    const std::filesystem::path workspace = test::scratch_folder();
+    const auto error = test::thrown_error([&] { read_cameras(workspace); });
+    REQUIRE(error);
+    REQUIRE(error->location());
+    CHECK(error->location()->file == workspace);
+    CHECK(error->reason().find("images.txt or images.bin") != std::string::npos);
+    std::filesystem::create_directories(workspace / "sparse");
+    std::filesystem::rename(model.folder, workspace / "sparse" / "0");
+    CHECK(read_cameras(workspace).front().name == "a");
+}
+
 TEST_CASE("invalid COLMAP files are refused with file and line") {
     const std::string image = "1 1 0 0 0 0 0 0 1 a.jpg\n\n";
     using Place = std::pair<std::string, uint64_t>;

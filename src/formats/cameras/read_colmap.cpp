@@ -249,6 +249,15 @@ std::vector<CameraOfFile> read_binary_images(const fs::path& path, const Calibra
     return all;
 }
 
+/// Returns the folder with the files of cameras, which is `path` or that of its first model.
+fs::path folder_of_model(const fs::path& path) {
+    for (const fs::path& folder : {path, path / "sparse" / "0"}) {
+        std::error_code ignored;
+        if (fs::exists(folder / "images.txt", ignored) || fs::exists(folder / "images.bin", ignored)) return folder;
+    }
+    throw fault({.file = path.string()}, "neither the folder nor its sparse/0 has an images.txt or images.bin");
+}
+
 } // namespace
 
 bool is_colmap(const fs::path& path) {
@@ -260,8 +269,9 @@ bool is_colmap(const fs::path& path) {
 
 std::vector<CameraOfFile> read_colmap(const fs::path& path) {
     std::error_code ignored;
-    const fs::path folder = fs::is_directory(path, ignored) ? path : path.parent_path();
-    const bool is_text = path.extension() == ".txt" || (path == folder && fs::exists(folder / "images.txt", ignored));
+    const bool is_folder = fs::is_directory(path, ignored);
+    const fs::path folder = is_folder ? folder_of_model(path) : path.parent_path();
+    const bool is_text = path.extension() == ".txt" || (is_folder && fs::exists(folder / "images.txt", ignored));
     std::vector<CameraOfFile> cameras =
         is_text ? read_text_images(folder / "images.txt", read_text_cameras(folder / "cameras.txt"))
                 : read_binary_images(folder / "images.bin", read_binary_cameras(folder / "cameras.bin"));

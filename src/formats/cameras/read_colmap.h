@@ -10,7 +10,8 @@ namespace pertev {
 /// Returns whether `path` is a folder or a file of COLMAP's, by its name.
 bool is_colmap(const std::filesystem::path& path);
 
-/// Reads the folder `path`, or the folder that has the file `path`. Throws Error(BadInput) with the line of a text.
+/// Reads the folder `path`, its sparse/0 if it has no such files itself, or the folder that has the file `path`. Throws
+/// Error(BadInput) with the line of a text.
 std::vector<CameraOfFile> read_colmap(const std::filesystem::path& path);
 
 } // namespace pertev
