@@ -1,6 +1,7 @@
 #include "image/flip.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "base/error.h"
@@ -249,10 +250,19 @@ std::vector<Vec3> colours_of(const Image& image) {
     return result;
 }
 
-FlipResult result_of(Plane map, const Image& like) {
+bool has_finite_color(const Image& image, std::size_t pixel) {
+    const float* const p = image.pixels.data() + pixel * image.channels;
+    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
+
+// A pixel without a finite colour differs by all that there is.
+FlipResult result_of(Plane map, const Image& picture, const Image& reference) {
+    for (std::size_t i = 0; i < map.size(); ++i) {
+        if (!has_finite_color(picture, i) || !has_finite_color(reference, i)) map[i] = 1;
+    }
     double sum = 0;
     for (const float error : map) sum += double(error);
-    return {sum / static_cast<double>(map.size()), {like.width, like.height, 1, std::move(map)}};
+    return {sum / static_cast<double>(map.size()), {picture.width, picture.height, 1, std::move(map)}};
 }
 
 Size size_of(const Image& image) { return {static_cast<int>(image.width), static_cast<int>(image.height)}; }
@@ -292,7 +302,7 @@ FlipResult flip(const Image& picture, const Image& reference, float pixels_per_d
     const auto perceived = [&](const Image& image) {
         return perceive(colours_of(image), size_of(image), pixels_per_degree);
     };
-    return result_of(error_map(perceived(picture), perceived(reference)), picture);
+    return result_of(error_map(perceived(picture), perceived(reference)), picture, reference);
 }
 
 FlipResult hdr_flip(const Image& picture, const Image& reference, float pixels_per_degree) {
@@ -328,7 +338,8 @@ std::vector<FlipResult> hdr_flips(const std::vector<const Image*>& pictures, con
         }
     }
     std::vector<FlipResult> results;
-    for (Plane& map : largest) results.push_back(result_of(std::move(map), reference));
+    for (std::size_t which = 0; which < pictures.size(); ++which)
+        results.push_back(result_of(std::move(largest[which]), *pictures[which], reference));
     return results;
 }
 

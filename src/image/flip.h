@@ -22,8 +22,8 @@ struct FlipResult {
 };
 
 /// Computes LDR-FLIP of pictures with 3 or 4 channels, linear Rec. 709 as read_image returns them for PNG and JPEG.
-/// Values are clamped to [0, 1], and NaN counts as 0. The result is symmetric. Throws Error(BadInput) if the sizes
-/// differ.
+/// Values are clamped to [0, 1]. A pixel that is not finite in a picture has the error 1. The result is symmetric.
+/// Throws Error(BadInput) if the sizes differ.
 FlipResult flip(const Image& picture, const Image& reference, float pixels_per_degree = kDefaultPixelsPerDegree);
 
 /// HDR-FLIP: the maximum LDR-FLIP of each pixel over a range of exposures that follows from the reference's

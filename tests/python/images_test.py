@@ -73,6 +73,21 @@ class Images(unittest.TestCase):
                     self.assertEqual(float(f"{value:.9g}"), printed[name], name)
         self.assertTrue(pertev.compare(other, files[1])["equal"])
 
+    def test_pixels_that_are_not_finite_differ_entirely(self):
+        black = numpy.zeros((8, 10, 3), numpy.float32)
+        for value in (numpy.nan, numpy.inf, -numpy.inf):
+            picture = black.copy()
+            picture[3, 4, 1] = value
+            for a, b in ((picture, black), (black, picture)):
+                found = pertev.compare(a, b)
+                self.assertEqual(found["rel_mse"], numpy.inf)
+                self.assertGreaterEqual(min(found["flip"], found["hdr_flip"]), 1 / 80)
+            pertev.write(self.folder / "a.exr", picture)
+            pertev.write(self.folder / "b.exr", black)
+            self.assertEqual(program("compare", self.folder / "a.exr", self.folder / "b.exr")[-1]["flip"], float(f"{found['flip']:.9g}"))
+        picture[3, 4, 1] = numpy.nan
+        self.assertEqual((pertev.compare(picture, black)["flip"], pertev.compare(black, black)["flip"]), (1 / 80, 0))
+
     def test_pictures_show_themselves(self):
         png = self.picture._repr_png_()
         (self.folder / "a.png").write_bytes(png)

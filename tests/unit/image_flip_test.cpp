@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <vector>
 
 #include "base/error.h"
 #include "image/flip.h"
@@ -243,7 +244,11 @@ TEST_CASE("FLIP stays within [0, 1] for values that are not finite and for pictu
     const Image a{2, 1, 3, {nan, -inf, inf, 0, 1, 1e30f}}, b{2, 1, 3, {1, 1, 1, 0, 0, 0}};
     for (const FlipResult& result : {flip(a, b), hdr_flip(a, b), hdr_flip(b, a)}) {
         for (const float error : result.map.pixels) CHECK((error >= 0 && error <= 1));
-        CHECK(result.mean > 0);
+        CHECK(result.map.pixels[0] == 1); // not finite
+        CHECK(result.mean > 0.5);
     }
+    const Image black{2, 1, 3, {0, 0, 0, 0, 0, 0}}, one_nan{2, 1, 3, {0, 0, nan, 0, 0, 0}};
+    for (const FlipResult& result : {flip(one_nan, black), flip(black, one_nan), hdr_flip(one_nan, black)})
+        CHECK(result.map.pixels == std::vector<float>{1, 0});
     CHECK_THROWS_AS(flip(filled(3, 0, 0, 0), filled(4, 0, 0, 0)), Error);
 }
