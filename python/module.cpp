@@ -316,9 +316,11 @@ void define_scene(nb::module_& module) {
         .def(
             "__init__",
             [](PythonSession* session, PythonScene& scene, SettingTexts settings) {
-                Messages unsaid; // the first frame reports them
-                PictureOptions options = scene.options_of({"", settings}, unsaid);
-                complete_options(options, kRender);
+                run_unlocked([&](PythonSink&) {
+                    Messages unsaid; // the first frame reports them
+                    PictureOptions options = scene.options_of({"", settings}, unsaid);
+                    complete_options(options, kRender);
+                });
                 new (session) PythonSession(scene, std::move(settings));
             },
             nb::keep_alive<1, 2>())

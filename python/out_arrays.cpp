@@ -64,7 +64,10 @@ constexpr const char* kReadOnly = "the array is read-only; expected one that can
 /// Returns whether the value is an array of JAX, none of which may change, though their DLPack does not say so.
 bool is_of_jax(nb::handle value) {
     const nb::object module = nb::getattr(value.type(), "__module__", nb::none());
-    return nb::isinstance<nb::str>(module) && std::string_view(nb::str(module).c_str()).starts_with("jax");
+    if (!nb::isinstance<nb::str>(module)) return false;
+    const std::string name = nb::str(module).c_str();
+    const std::string package = name.substr(0, name.find('.'));
+    return package == "jax" || package == "jaxlib";
 }
 
 /// Returns why an array that is no writable one of the host in the order of C cannot be filled.

@@ -154,7 +154,7 @@ def read_cameras(path, *, size=None, convention=None):
 
     poses, K = numbers("camera_pose", 12, 16), numbers("intrinsics", 4, 9)
     if len(poses) != len(rows) or len(K) not in (0, len(rows)):
-        raise _of_file(path, f"each camera needs a camera_pose, and all or none have intrinsics")
+        raise _of_file(path, "each camera needs a camera_pose, and all or none have intrinsics")
     last = numpy.array([0, 0, 0, 1.0])
     cameras = Cameras(numpy.array([numpy.append(pose[:12], last) for pose in poses]).reshape(-1, 4, 4),
                       numpy.array([of if len(of) == 4 else of[[0, 4, 2, 5]] for of in K]) if K else None,

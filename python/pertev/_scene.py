@@ -136,7 +136,10 @@ class _Unopened(Scene):
     multiprocessing.Pool whose argument raises ends without an answer, and the pool waits without end."""
 
     def __getattribute__(self, name):
-        raise object.__getattribute__(self, "_error")
+        raise object.__getattribute__(self, "_error").with_traceback(None)
+
+    def __repr__(self):
+        return self.name
 
 
 def _reopened(name, settings, edits):

@@ -132,8 +132,10 @@ float alpha_that_reaches(float cutoff) { return cutoff > 1 ? cutoff : (1.0f - 0x
 MaterialParameters parameters_for_device(const Material& material) {
     MaterialParameters parameters = material;
     parameters.alpha_cutoff = alpha_that_reaches(material.alpha_cutoff);
-    if (material.kind == MaterialKind::Conductor)
+    if (material.kind == MaterialKind::Conductor) {
         parameters.base_color = fresnel_conductor(1.0f, material.eta, material.k);
+        if (material.alpha_mode == AlphaMode::Opaque) parameters.base_color_texture = {}; // else its alpha counts
+    }
     return parameters;
 }
 

@@ -120,8 +120,10 @@ void report_unsolved(const RenderSettings& settings, const Scene& scene, Sink& s
         const bool is_whole = m.kind == MaterialKind::MetallicRoughness && m.metallic == 1 && !is_black(m.base_color);
         return is_rough(m) && (m.kind == MaterialKind::Conductor || (is_whole && !m.metallic_texture.has_image()));
     });
-    report("renders rough glass black",
-           [&](const Material& m) { return is_rough(m) && m.kind == MaterialKind::Dielectric && m.ior != 1; });
+    report("renders rough glass black", [&](const Material& m) {
+        const bool is_pane = m.transmits() && m.transmission_weight == 1 && !m.transmission_texture.has_image();
+        return is_rough(m) && ((m.kind == MaterialKind::Dielectric && m.ior != 1) || is_pane);
+    });
 }
 
 } // namespace

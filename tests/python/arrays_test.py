@@ -114,6 +114,14 @@ class Arrays(unittest.TestCase):
         self.assertEqual(pictures["bytes"][..., 1].max(), 0)
         self.assertTrue((pictures["grey"][..., 0] == pictures["grey"][..., 1]).all())
 
+    def test_the_albedo_of_a_conductor_is_not_that_of_its_texture(self):
+        albedo = []
+        for texture in ({}, {"base_color_texture": numpy.zeros((2, 2, 3), numpy.uint8)}):
+            scene = pertev.Scene(**parts(materials={"red": {"kind": "conductor", "base_color": (1, 1, 1), **texture}}))
+            albedo.append(pertev.render(scene, **SMALL, layers=["albedo"]).albedo)
+        self.assertTrue((albedo[0] == albedo[1]).all())
+        self.assertGreater(albedo[1].max(), 0.9)
+
     def test_an_environment_is_an_array(self):
         image = numpy.zeros((8, 16, 3), numpy.float32)
         image[:4] = 1

@@ -151,11 +151,15 @@ std::shared_ptr<const OidnLibrary> OidnLibrary::find(const char* setting) {
     static std::mutex mutex;
     static std::shared_ptr<const OidnLibrary> found; // by the last search that found one
     static std::string found_by;
-    const std::scoped_lock lock(mutex);
     const std::string given = environment("PERTEV_OIDN");
-    if (found && given == found_by) return found;
+    const auto is_found = [&] { return found && given == found_by; };
+    if (const std::scoped_lock lock(mutex); is_found()) return found;
+    // The search takes the interpreter's lock, whose holder may wait for the mutex, so it comes first.
+    const std::vector<std::string> files = files_to_try(given);
+    const std::scoped_lock lock(mutex);
+    if (is_found()) return found;
     std::string why;
-    for (const std::string& file : files_to_try(given)) {
+    for (const std::string& file : files) {
         OidnLibrary library;
         const std::string fault = library.load(file);
         if (fault.empty()) {

@@ -119,8 +119,11 @@ template <bool kHasOneByTree = false, class Run>
 void with_choice(const SubpathScene& scene, const Run& run) {
     const ShadingVariant variant = scene.picture.scene.variant;
     if (uses_light_tree(scene)) {
-        if constexpr (kHasOneByTree) return run.template operator()<ShadingVariant::General, ChosenByTree>();
-        with_stacks(variant, [&]<ShadingVariant kVariant>() { run.template operator()<kVariant, ChosenByTree>(); });
+        if constexpr (kHasOneByTree) {
+            run.template operator()<ShadingVariant::General, ChosenByTree>();
+        } else {
+            with_stacks(variant, [&]<ShadingVariant kVariant>() { run.template operator()<kVariant, ChosenByTree>(); });
+        }
     } else {
         with_plain_diffuse(variant,
                            [&]<ShadingVariant kVariant>() { run.template operator()<kVariant, ChosenByPower>(); });
