@@ -110,7 +110,7 @@ Scene scene_with(ShadingVariant variant) {
 
 ShadingVariant variant_of(const Scene& scene) {
     std::vector<MaterialParameters> views;
-    for (const Material& material : scene.materials) views.push_back(parameters_for_device(material));
+    for (const Material& material : scene.materials) views.push_back(material);
     return pertev::variant_of(views);
 }
 
