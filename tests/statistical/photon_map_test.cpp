@@ -40,7 +40,7 @@ std::vector<PhotonCase> photon_cases() {
     return {
         {"diffuse", test::room_with_ball(test::white(0.8f), wall, false)},
         {"glass", test::room_with_ball(test::of_roughness(MaterialKind::Dielectric, 0), wall, false)},
-        {"leaf", test::room_with_ball(leaf, wall, false)},
+        {"leaf", test::room_with_ball(leaf, wall, false), 6e-3},
         {"glossy", test::room_with_ball(test::of_roughness(MaterialKind::MetallicRoughness, 0.3f, 1), plastic, false)},
         {"mirrors under the sky", test::room_with_ball(test::of_roughness(MaterialKind::Conductor, 0), varnished, true),
          4e-2, 2048}}; // because its sun is small
