@@ -13,6 +13,7 @@
 #include "formats/described/environment.h"
 #include "formats/described/finish_meshes.h"
 #include "formats/described/image_budget.h"
+#include "formats/described/missing_coordinates.h"
 #include "formats/described/mix_surfaces.h"
 #include "formats/described/project_textures.h"
 #include "formats/described/transforms.h"
@@ -39,15 +40,6 @@ DoubleBounds3 box_of(const Mesh& mesh, const DoubleTransform& transform) {
         box.extend(transform_point(transform, to_double(p)));
     }
     return box;
-}
-
-/// Gives each triangle of a mesh the coordinates `corners`.
-void give_coordinates(const std::array<Vec2, 3>& corners, ShapeMesh& shape) {
-    shape.mesh = split_faces(shape.mesh);
-    for (std::size_t i = 0; i < shape.mesh.indices.size(); ++i) {
-        const std::size_t corner = i % 3;
-        shape.mesh.uv[0].push_back(corners[corner > 0 && shape.is_turned[i / 3] ? 3 - corner : corner]);
-    }
 }
 
 /// The materials of the scene, each made once.
@@ -176,24 +168,6 @@ std::vector<DoubleTransform> place_shapes(const Parts& parts, const DoubleTransf
     return transforms;
 }
 
-/// Gives coordinates to the meshes that lack them and have textures.
-void give_missing_coordinates(Parts& parts) {
-    std::vector<bool> has_textures(parts.meshes.size());
-    for (const Placed& shape : parts.placed) {
-        const Surface& surface = parts.surfaces[shape.surface];
-        const auto has_own = [&](const SlotImage& image) { return (surface.material.*image.slot).uv_set != 0; };
-        if (!std::ranges::all_of(surface.images, has_own) || surface.has_heights ||
-            surface.material.normal_texture.has_image() ||
-            (shape.alpha && parts.alphas[*shape.alpha].has_image() && !parts.alphas[*shape.alpha].mapping) ||
-            (shape.area_light && parts.area_lights[*shape.area_light].image.has_image()))
-            has_textures[shape.mesh] = true;
-    }
-    for (std::size_t i = 0; i < has_textures.size(); ++i) {
-        ShapeMesh& shape = parts.meshes[i];
-        if (has_textures[i] && shape.mesh.uv[0].empty()) give_coordinates(parts.missing_coordinates, shape);
-    }
-}
-
 /// Numbers of parts in the scene.
 struct Made {
     std::vector<std::optional<uint32_t>> numbers; // each mesh has one
@@ -265,7 +239,7 @@ Scene assemble(Parts parts, const DoubleTransform& scene_from_world, uint64_t fi
     const std::vector<DoubleTransform> transforms = place_shapes(parts, scene_from_world, scene);
     const DoubleTransform scene_from_file =
         compose(translation_by(DoubleVec3{0, 0, 0} - scene.origin_in_file), scene_from_world);
-    give_missing_coordinates(parts);
+    for (const Placed& shape : parts.placed) give_missing_coordinates(parts, shape, parts.meshes[shape.mesh]);
     Assembly assembly{.parts = parts, .scene = scene, .sink = sink, .numbers = {}, .surfaces = {}};
     const Made made = add_shapes(parts, transforms, assembly, scene, sink);
     if (scene.instances.empty()) {

@@ -9,44 +9,18 @@
 #include <utility>
 
 #include "base/limits.h"
+#include "formats/described/divide_triangles.h"
+#include "formats/described/mapped_coordinates.h"
+#include "formats/described/missing_coordinates.h"
 #include "formats/described/transforms.h"
-#include "math/portable_math.h"
 
 namespace pertev::described {
 namespace {
 
 using Mappings = std::vector<std::shared_ptr<const TextureMapping>>;
 constexpr std::size_t kMaxMappings = kTextureSets - 1;
-
-/// The coordinates of a vertex by pbrt's formulas, whose t points up.
-struct Coordinates {
-    double s = 0, t = 0;
-    bool is_on_axis = false; // the angle around the axis is not defined
-};
-
-/// Returns the coordinate that goes around the axis, for which 0 and 1 are one place.
-double Coordinates::*around_of(MappingKind kind) {
-    return kind == MappingKind::Spherical ? &Coordinates::t : &Coordinates::s;
-}
-
-/// Returns the angle of a vector over a whole turn, from -1/2 to 1/2.
-double share_of_turn(double y, double x) {
-    return static_cast<double>(atan2(static_cast<float>(y), static_cast<float>(x))) / (2 * kPiDouble);
-}
-
-Coordinates coordinates_at(const TextureMapping& by, DoubleVec3 world) {
-    const DoubleVec3 at = transform_point(by.texture_from_world, world);
-    if (by.kind == MappingKind::Planar) return {by.u_offset + dot(at, by.u_axis), by.v_offset + dot(at, by.v_axis)};
-    // The largest component becomes 1, so that no square overflows.
-    const double size = std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)});
-    if (!(size > 0) || !std::isfinite(size)) return {0, 0, true};
-    const DoubleVec3 p = {at.x / size, at.y / size, at.z / size};
-    const double length = std::sqrt(dot(p, p)), aside = std::sqrt(p.x * p.x + p.y * p.y);
-    const double turn = share_of_turn(p.y, p.x);
-    const bool is_on_axis = !(aside > 1e-6 * length);
-    if (by.kind == MappingKind::Cylindrical) return {0.5 + turn, p.z / length, is_on_axis};
-    return {2 * share_of_turn(aside, p.z), turn < 0 ? turn + 1 : turn, is_on_axis};
-}
+/// The most triangles that dividing them makes of a mesh.
+constexpr uint64_t kMostTriangles = 1 << 20;
 
 /// Appends a copy of a vertex, without its set `except`. Returns its number.
 uint32_t append_copy(Mesh& mesh, uint32_t vertex, std::size_t except) {
@@ -66,11 +40,8 @@ uint32_t append_copy(Mesh& mesh, uint32_t vertex, std::size_t except) {
 }
 
 /// Adds a set of coordinates. Triangles at the axis and across the seam, where the angle around it is a whole turn, get
-/// vertices of their own, so that they do not have the whole picture. Returns whether triangles are large: coordinates
-/// are linear across them.
-bool add_set(Mesh& mesh, const TextureMapping& by, const DoubleTransform& world_from_mesh, std::size_t set) {
-    constexpr double kLargeSpan = 1.0 / 16; // turns
-    bool has_large = false;
+/// vertices of their own, so that they do not have the whole picture.
+void add_set(Mesh& mesh, const TextureMapping& by, const DoubleTransform& world_from_mesh, std::size_t set) {
     std::vector<Coordinates> at;
     for (const Vec3& position : mesh.positions)
         at.push_back(coordinates_at(by, transform_point(world_from_mesh, to_double(position))));
@@ -102,8 +73,6 @@ bool add_set(Mesh& mesh, const TextureMapping& by, const DoubleTransform& world_
                 }
                 sum += at[vertex].*around, ++count;
             });
-            const double span = greatest - least;
-            has_large = has_large || (count > 1 && std::min(span, std::abs(1 - span)) > kLargeSpan);
             if (count == 0 || count == 3) continue;
             for (std::size_t k = first; k < first + 3; ++k) {
                 uint32_t& vertex = mesh.indices[k];
@@ -115,7 +84,6 @@ bool add_set(Mesh& mesh, const TextureMapping& by, const DoubleTransform& world_
     uv.clear();
     const auto usable = [](double x) { return std::isfinite(static_cast<float>(x)) ? static_cast<float>(x) : 0.0f; };
     for (const Coordinates& c : at) uv.push_back({usable(c.s), usable(1 - c.t)}); // v points down
-    return has_large;
 }
 
 /// Surfaces and opacities that use the coordinates of meshes in place of mappings, by those that do not.
@@ -145,22 +113,28 @@ struct WithoutMappings {
 
 /// Returns the mesh with sets of coordinates by these mappings, from 1 on, or nothing if it takes more than `left`
 /// bytes.
-std::optional<ShapeMesh> with_sets(const ShapeMesh& from, const Mappings& sets, const DoubleTransform& world_from_mesh,
-                                   uint64_t& left, Sink& sink) {
-    // Every corner may get a vertex of its own for each set.
+std::optional<ShapeMesh> with_sets(const Parts& parts, const Placed& shape, const Mappings& sets,
+                                   const DoubleTransform& world_from_mesh, uint64_t& left, Sink& sink) {
+    const ShapeMesh& from = parts.meshes[shape.mesh];
+    // Every corner may get a vertex of its own for each set, and a vertex divides an edge.
     constexpr uint64_t kVertexBytes = 3 * sizeof(Vec4) + kTextureSets * sizeof(Vec2) + sizeof(uint32_t);
-    const uint64_t vertices = from.mesh.positions.size() + sets.size() * from.mesh.indices.size(),
-                   bytes = sizeof(ShapeMesh) + kVertexBytes * vertices;
-    if (bytes > left) {
+    const uint64_t of_triangle = 3 * sets.size() + 2;
+    const auto bytes_of = [&](const Mesh& mesh) {
+        return sizeof(ShapeMesh) + kVertexBytes * (mesh.positions.size() + of_triangle * mesh.triangle_count());
+    };
+    if (bytes_of(from.mesh) > left) {
         sink.leave_out({from.location, "the mapping of a texture is left out; uv is used"});
         return std::nullopt;
     }
-    left -= bytes;
     ShapeMesh made = from;
-    bool has_large = false;
-    for (std::size_t k = 0; k < sets.size(); ++k)
-        has_large = add_set(made.mesh, *sets[k], world_from_mesh, k + 1) || has_large;
-    if (has_large) sink.warn({from.location, "the mapping of a texture is linear across large triangles"});
+    give_missing_coordinates(parts, shape, made);
+    // A power is that of each of the file's triangles.
+    const bool has_power = shape.area_light && parts.area_lights[*shape.area_light].power > 0 && !from.is_quadric;
+    const uint64_t most = has_power ? 0 : (left - bytes_of(from.mesh)) / (kVertexBytes * (of_triangle + 2));
+    if (!divide_triangles(made.mesh, sets, world_from_mesh, std::min<uint64_t>(most, kMostTriangles)))
+        sink.warn({from.location, "the mapping of a texture is linear across large triangles"});
+    left -= std::min(bytes_of(made.mesh), left);
+    for (std::size_t k = 0; k < sets.size(); ++k) add_set(made.mesh, *sets[k], world_from_mesh, k + 1);
     return made;
 }
 
@@ -182,7 +156,7 @@ void project_textures(Parts& parts, uint64_t file_bytes, Sink& sink) {
     const auto has_mapping = [](const SlotImage& image) { return image.mapping != nullptr; };
     for (Surface& surface : parts.surfaces) number_mappings(surface);
     using Place = std::array<double, 12>;
-    std::map<std::tuple<uint32_t, Place, std::vector<const TextureMapping*>>, uint32_t> known;
+    std::map<std::tuple<uint32_t, Place, std::vector<const TextureMapping*>, bool>, uint32_t> known;
     uint64_t left = justified_bytes(kFreeMeshBytes, file_bytes);
     WithoutMappings without;
     for (Placed& shape : parts.placed) {
@@ -199,15 +173,16 @@ void project_textures(Parts& parts, uint64_t file_bytes, Sink& sink) {
         };
         std::vector<const TextureMapping*> pointers;
         for (const auto& mapping : sets) pointers.push_back(mapping.get());
-        const auto [copy, is_new] =
-            known.try_emplace({shape.mesh, numbers(m.row0, m.row1, m.row2, m.translation), pointers}, shape.mesh);
+        const auto [copy, is_new] = known.try_emplace({shape.mesh, numbers(m.row0, m.row1, m.row2, m.translation),
+                                                       pointers, lacks_coordinates(parts, shape, from)},
+                                                      shape.mesh);
         if (is_new) {
             const auto is_left_out = [&](const SlotImage& image) {
                 return has_mapping(image) && (surface.material.*image.slot).uv_set == 0;
             };
             if (std::ranges::any_of(surface.images, is_left_out))
                 sink.leave_out({from.location, "a fourth mapping of one material is left out; uv is used"});
-            if (std::optional<ShapeMesh> made = with_sets(from, sets, m, left, sink)) {
+            if (std::optional<ShapeMesh> made = with_sets(parts, shape, sets, m, left, sink)) {
                 copy->second = static_cast<uint32_t>(parts.meshes.size());
                 parts.meshes.push_back(*std::move(made));
             }

@@ -1,7 +1,8 @@
 #pragma once
 
 // Texture coordinates by mappings (formats/described/texture_mapping.h), as further sets of coordinates of a mesh's own
-// copy. They are exact at vertices, and linear between them.
+// copy. They are exact at vertices, and linear between them, on triangles that are divided until that is hardly
+// visible.
 
 #include "base/sink.h"
 #include "formats/described/parts.h"
