@@ -54,9 +54,7 @@ uint32_t color_channels_of(const RenderSettings& settings) {
 }
 
 std::string text_of_layers(uint32_t groups) {
-    std::vector<std::string> names;
-    for (const AovGroup& group : kAovTable)
-        if ((groups & group.bit) != 0) names.emplace_back(group.name);
+    const std::vector<std::string> names = aov_names(groups);
     return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 

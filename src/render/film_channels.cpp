@@ -27,9 +27,10 @@ std::optional<AovBits> aov_named(std::string_view name) {
     return std::nullopt;
 }
 
-std::vector<std::string> aov_names() {
+std::vector<std::string> aov_names(uint32_t aovs) {
     std::vector<std::string> names;
-    for (const AovGroup& group : kAovTable) names.emplace_back(group.name);
+    for (const AovGroup& group : kAovTable)
+        if ((aovs & group.bit) != 0) names.emplace_back(group.name);
     return names;
 }
 

@@ -102,7 +102,7 @@ std::vector<std::string> channel_names(const AovGroup& group);
 
 /// Finds a group by its name.
 std::optional<AovBits> aov_named(std::string_view name);
-/// Names of all groups in the order of their bits.
-std::vector<std::string> aov_names();
+/// Names of those groups in the order of their bits.
+std::vector<std::string> aov_names(uint32_t aovs = ~0u);
 
 } // namespace pertev

@@ -30,8 +30,7 @@ void check_batch(const CameraBatch& batch, const RenderSettings& settings) {
     refuse(settings.irradiance, "false_color", "illuminance", "batches of pictures show radiance");
     refuse((settings.aovs & kAovMotion) != 0, "aov", "motion", "pictures of a batch have no earlier frame");
     if (settings.sample_layers != 0) {
-        std::vector<std::string> names = aov_names();
-        std::erase(names, "motion");
+        const std::vector<std::string> names = aov_names(~static_cast<uint32_t>(kAovMotion));
         throw Error(ErrorCode::BadInput, "aov", sample_layer_names(settings.sample_layers).front(),
                     fmt::format("batches of pictures have only {}", fmt::join(names, ", ")));
     }

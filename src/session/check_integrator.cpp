@@ -63,8 +63,7 @@ PictureOptions options_of(const RenderSettings& settings) {
     PictureOptions options;
     options.render = settings;
     if (settings.is_denoised()) give("denoise", options);
-    for (const AovGroup& group : kAovTable)
-        if ((settings.aovs & group.bit) != 0) options.aovs.emplace_back(group.name);
+    options.aovs = aov_names(settings.aovs);
     for (std::string& name : sample_layer_names(settings.sample_layers)) options.aovs.push_back(std::move(name));
     if (!options.aovs.empty()) give("aov", options);
     if (!options.aovs.empty() && settings.layers_at == LayersAt::Centre) give("layers_at", options);

@@ -260,11 +260,9 @@ std::optional<SettingDifference> film_difference(const FilmHeader& before, const
 }
 
 std::string json_of(const FilmHeader& header) {
-    std::vector<std::string> settings, layers;
+    std::vector<std::string> settings, layers = aov_names(header.aovs);
     for (const auto& [name, value] : header.settings)
         settings.push_back(fmt::format("{}:{}", json_string(name), json_string(value)));
-    for (const AovGroup& group : kAovTable)
-        if ((header.aovs & group.bit) != 0) layers.emplace_back(group.name);
     for (std::string& name : sample_layer_names(header.sample_layers)) layers.push_back(std::move(name));
     const PictureFacts& facts = header.facts;
     return fmt::format(
