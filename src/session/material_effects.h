@@ -26,6 +26,9 @@ bool makes_reflective(std::string_view key, bool has_default);
 /// Returns whether the parameter has the value that it has in a new material.
 bool has_default(const MaterialParameters& material, std::string_view key);
 
+/// Returns whether not all kinds use the parameter, so that is_heeded() judges it.
+bool is_judged(std::string_view key);
+
 /// Returns whether the material does what the parameter asks for: its kind uses the parameter, or always is as the
 /// value says. Parameters that no kind lacks are not judged.
 bool is_heeded(const MaterialParameters& material, std::string_view key);

@@ -1,8 +1,12 @@
 #include <doctest/doctest.h>
 
+#include <set>
+#include <string>
+
 #include <fmt/format.h>
 
 #include "scene/metals.h"
+#include "session/material_effects.h"
 #include "session/opening/open_scene.h"
 #include "session/set_materials.h"
 #include "shading/lobes/fresnel.h"
@@ -189,6 +193,20 @@ TEST_CASE("parameters without an effect on the kind of their material are report
     CHECK(scene.materials[0].is_solid());
     CHECK(warnings_of_changes(scene, {"gold ring kind=conductor", "gold ring eta=1", "gold ring kind=dielectric"})
               .size() == 1);
+}
+
+TEST_CASE("each parameter of a material is judged by its kind, but those that all kinds use") {
+    std::set<std::string> not_judged;
+    const auto note = [&](auto&&, const char* name, auto&&...) {
+        if (!is_judged(name)) not_judged.insert(name);
+    };
+    const MaterialParameters material;
+    visit_choices(material, note);
+    visit_flags(material, note);
+    visit_parameters(material, note, [](auto&&...) {});
+    CHECK(not_judged == std::set<std::string>{"alpha", "alpha_cutoff", "alpha_mode", "double_sided",
+                                              "is_clear_boundary", "kind", "medium_g", "medium_sigma_a",
+                                              "medium_sigma_s"});
 }
 
 TEST_CASE("measured metals reflect as published, and an unknown one is answered with the list") {
