@@ -201,11 +201,11 @@ std::vector<Setting> picture_settings() {
             Otherwise{"all"}, On{kMachines | kSolve}, Mark::NotKept),
         row("no_bvh_cache", "Machine", "", FIELD(no_cache),
             "The acceleration structure is built, even if it is in the cache.", On{kShown | kMeasure | kSolve},
-            Mark::NotKept),
+            Mark::NotKept, Changes::Picture),
         row("max_memory", "Machine", "MIB", FIELD(radiosity.max_memory),
             "The most memory: of the device for a picture, of the machine for solving radiosity. Larger tasks are "
             "refused.",
-            Above{0}, Unit{"MiB"}, Otherwise{"all there is"}, On{kLooking | kSolve}, Mark::NotKept),
+            Above{0}, Unit{"MiB"}, Otherwise{"all there is"}, On{kLooking | kSolve}, Mark::NotKept, Changes::Picture),
         row("strict", "Machine", "", FIELD(strict),
             "The verb fails before its work if a part of the scene is left out or a settings file has an unknown "
             "entry, and after writing if a sample is not finite.",

@@ -55,8 +55,10 @@ class KeptScene(unittest.TestCase):
     def test_a_scene_is_opened_once(self):
         scene = pertev.load("cornell-box")
         first = pertev.render(scene, **SMALL)
-        other = pertev.render(scene, **SMALL, seed=1, eye=(0.2, 0.3, -0.7))
+        other = pertev.render(scene, **SMALL, seed=1, eye=(0.2, 0.3, -0.7), max_memory=4096, no_bvh_cache=True)
         self.assertEqual(first.info["load_seconds"], other.info["load_seconds"]) # equal bits, so the scene was not read again
+        with self.assertRaises(pertev.MemoryLimitError):
+            pertev.render(scene, **SMALL, max_memory=0.01)
         again = pertev.render(scene, **SMALL, environment=(1, 1, 1))
         self.assertNotEqual(first.info["load_seconds"], again.info["load_seconds"])
 
