@@ -376,7 +376,7 @@ void raise(const Error& error) {
     const FileLocation where = error.location().value_or(FileLocation{});
     const nb::object raised =
         nb::module_::import_("pertev.errors")
-            .attr("made")(exit_status(error.code()), python_text(error.remark()), error.setting(), error.value(),
+            .attr("made")(exit_status(error.code()), error.remark().text(), error.setting(), error.value(),
                           error.reason(), where.file, where.line, where.pointer.value_or(""));
     PyErr_SetObject(raised.type().ptr(), raised.ptr());
 }
@@ -410,6 +410,7 @@ NB_MODULE(_core, module) {
         "frame_settings", [] { return settings_of(true); }, "Additional settings of frames");
     module.def("part_settings", &settings_of_parts, "Additional settings of single pictures");
     module.def("read_cameras", &cameras_of_file);
+    module.def("phrase", &python_text);
     module.def("suggest_name", [](const std::string& name, const std::vector<std::string>& names) {
         return suggest_name(name, names);
     });

@@ -12,6 +12,18 @@ namespace nb = nanobind;
 
 namespace pertev {
 
+namespace {
+
+/// Returns whether this is the interpreter's main thread, which need not be the process's first one.
+bool is_main_thread() {
+    const nb::module_ threading = nb::module_::import_("threading");
+    return threading.attr("get_ident")().equal(threading.attr("main_thread")().attr("ident"));
+}
+
+} // namespace
+
+PythonSink::PythonSink() : is_main_(is_main_thread()) {}
+
 bool PythonSink::should_stop() {
     if (has_raised_) return true;
     if (!is_main_ || std::this_thread::get_id() != caller_) return false;
@@ -27,12 +39,12 @@ void log_messages(const Messages& messages) {
     if (messages.all().empty()) return;
     const nb::object logger = nb::module_::import_("logging").attr("getLogger")("pertev");
     for (const Message& message : messages.all()) {
-        logger.attr(message.is_warning ? "warning" : "info")("%s", python_text(message.remark));
+        logger.attr(message.is_warning ? "warning" : "info")("%s", python_text(message.remark.text()));
     }
 }
 
-std::string python_text(const Remark& remark) {
-    return phrase_settings(remark.text(), [](std::string_view name, std::string_view value) {
+std::string python_text(const std::string& marked) {
+    return phrase_settings(marked, [](std::string_view name, std::string_view value) {
         if (value.empty()) return std::string(name);
         const Setting* setting = find_setting(name);
         if (setting != nullptr && is_vector(*setting)) return fmt::format("{}=({})", name, value);

@@ -3,12 +3,11 @@
 import math
 import operator
 import os
-import re
 from collections.abc import Mapping
 
 from . import _core
 from ._arrays import on_host
-from .errors import Error, input_error
+from .errors import Error, input_error, rename_setting
 
 OF_PICTURES = {row["name"]: row for row in _core.settings()}
 OF_SEQUENCES = {row["name"]: row for row in _core.frame_settings()}
@@ -20,7 +19,6 @@ ARGUMENTS = ("cameras", "color", "on_device", "out", "output", "seeds", "setting
 SEPARATORS = {"A:B": ":", "I/N": "/"}  # by the form of a value
 TOO_LARGE = "the number is too large"
 MATRICES = {"camera_pose": ((4, 4), (3, 4)), "intrinsics": ((3, 3),)}  # shapes of settings that may have rows
-OTHER_AOV = re.compile(r"\b((?:needs|cannot be combined with) `?)aov\b")
 BOOLS = ("bool", "bool_")  # names in Python and NumPy 2, and in NumPy 1
 
 
@@ -185,9 +183,5 @@ class of_layers:
         pass
 
     def __exit__(self, kind, error, trace):
-        if not isinstance(error, Error) or error.file or self._values.get("aov") is not None:
-            return
-        if error.setting == "aov":
-            error.setting, error.args = "layers", (str(error).replace("aov", "layers", 1),)
-        error.reason, text = (OTHER_AOV.sub(r"\1layers", text) for text in (error.reason, str(error)))
-        error.args = (text,)
+        if isinstance(error, Error) and error._marked and not error.file and self._values.get("aov") is None:
+            rename_setting(error, "aov", "layers")

@@ -3,6 +3,8 @@
 import errno
 import os
 
+from . import _core
+
 
 class Error(Exception):
     """An error of Pertev, with the parts of its message.
@@ -11,7 +13,7 @@ class Error(Exception):
     input: `file`, `line` (from 1; 0: none) or `pointer` (RFC 6901; empty: none).
     """
 
-    setting = value = reason = file = pointer = ""
+    setting = value = reason = file = pointer = _marked = ""
     line = 0
 
 
@@ -60,15 +62,28 @@ _KINDS = {2: InputError, 3: LimitError, 4: MemoryLimitError, 5: DeviceError, 6: 
 _NUMBERS = {os.strerror(number): number for number in errno.errorcode}
 
 
-def made(status, text, setting, value, reason, file, line, pointer):
-    """Returns the exception for an exit status of the program, with the parts of its message."""
+def _text(marked, setting, value):
+    # Names with capitals or slashes, as meshes/floor/faces, are no settings of the table.
+    return _core.phrase(marked.replace(f"`{setting}`", setting).replace(f"`{setting}={value}`", f"{setting}='{value}'"))
+
+
+def made(status, marked, setting, value, reason, file, line, pointer):
+    """Returns the exception for an exit status of the program, with the parts of its message. Names of settings are between
+    backquotes in `marked` and `reason`."""
     name = file or value
     number = _NUMBERS.get(reason.rpartition(": ")[2]) if name else None
     kind = MissingFileError if status == 2 and number == errno.ENOENT else _KINDS[status]
-    # Names with capitals or slashes, as meshes/floor/faces, are no settings of the table.
-    text = text.replace(f"`{setting}`", setting).replace(f"`{setting}={value}`", f"{setting}='{value}'")
-    error = kind(text)
-    error.setting, error.value, error.reason, error.file, error.line, error.pointer = setting, value, reason, file, line, pointer
+    error = kind(_text(marked, setting, value))
+    error._marked, error.setting, error.value, error.reason, error.file, error.line, error.pointer = marked, setting, value, reason, file, line, pointer
     if issubclass(kind, _OfFile) and name:
         error.errno, error.filename, error.strerror = number, name, reason
     return error
+
+
+def rename_setting(error, setting, argument):
+    """Makes an error of `made` say `argument` for a setting, as its own or as one that it names between backquotes."""
+    marked, error.reason = (
+        text.replace(f"`{setting}`", f"`{argument}`").replace(f"`{setting}=", f"`{argument}=") for text in (error._marked, error.reason)
+    )
+    error.setting = argument if error.setting == setting else error.setting
+    error._marked, error.args = marked, (_text(marked, error.setting, error.value),)
