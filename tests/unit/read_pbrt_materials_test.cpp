@@ -108,6 +108,18 @@ TEST_CASE("pbrt: an index that is none is left out for the default, and a bubble
     CHECK(pbrt_material("Material \"disney\" \"float eta\" .75 \"float spectrans\" 1").ior == 0.75f);
 }
 
+TEST_CASE("pbrt: the parts of disney are as bright as pbrt's") {
+    const Material plain = pbrt_material("Material \"disney\"");
+    CHECK(plain.base_color.r == doctest::Approx(0.5f * 1.1f).epsilon(0.05)); // ours is dimmed by the reflection above
+    CHECK(plain.specular_weight == 1);
+    CHECK(pbrt_material("Material \"disney\" \"float eta\" 1").specular_weight == 0);
+    const Material layered =
+        pbrt_material("Material \"disney\" \"float clearcoat\" 1 \"float clearcoatgloss\" 0 \"float sheen\" 1");
+    CHECK(layered.coat_weight == 0.25f);
+    CHECK(layered.coat_roughness == doctest::Approx(std::sqrt(0.1)));
+    CHECK(layered.fuzz_weight == 0.09f);
+}
+
 TEST_CASE("pbrt: a coat that is rough along one direction alone is not smooth") {
     const Material coat = pbrt_material("Material \"coateddiffuse\" \"float uroughness\" .3 \"float vroughness\" 0");
     CHECK(coat.roughness == 0);

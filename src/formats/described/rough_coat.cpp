@@ -78,16 +78,40 @@ Shares shares_at(const Facets& facets, float z, float eta) {
     return {sum.reflected / all, sum.transmitted / all, mirrored > 0 ? sum.schlick / mirrored : 1.0f};
 }
 
-} // namespace
-
-CoatedBase base_of_coat(const Material& coat, CoatModel model) {
-    const float narrow = coat.roughness * coat.roughness, n = coat.ior;
+Facets facets_of(const Material& coat) {
+    const float narrow = coat.roughness * coat.roughness;
     const float wide = lerp(narrow, 1.0f, square(coat.specular_roughness_anisotropy));
     const float width = coat.roughness_texture.has_image() ? 0.1f : max(sqrt(narrow * wide), 0.5f * wide);
-    const Facets facets = {max(width, kSmoothWidth), coat.microfacet_distribution == MicrofacetDistribution::Beckmann};
-    const float root = (n - 1) / (n + 1), f90 = coat.specular_weight;
+    return {clamp(width, kSmoothWidth, 1.0f), coat.microfacet_distribution == MicrofacetDistribution::Beckmann};
+}
+
+} // namespace
+
+float passed_by_reflection(const Material& coat) {
+    const float root = (coat.ior - 1) / (coat.ior + 1), f90 = coat.specular_weight;
     const float f0 = f90 * min(root * root * max_component(coat.specular_color), 1.0f);
-    std::array<float, kCosines> ours;
+    const Facets facets = facets_of(coat);
+    std::array<float, kCosines> reflected;
+    for (int k = 0; k < kCosines; ++k) {
+        const float z = (static_cast<float>(k) + 0.5f) / kCosines;
+        reflected[static_cast<std::size_t>(k)] = f0 + (f90 - f0) * shares_at(facets, z, coat.ior).schlick;
+    }
+    const bool is_smooth = !(facets.width > kSmoothWidth) && coat.energy == MicrofacetEnergy::Compensated;
+    float passed = 0;
+    for (int i = 0; i < kCosines; ++i) {
+        for (int o = 0; o < kCosines; ++o) {
+            const float a = reflected[static_cast<std::size_t>(i)], b = reflected[static_cast<std::size_t>(o)];
+            const float weight = (2 * static_cast<float>(i) + 1) * (2 * static_cast<float>(o) + 1);
+            passed += weight * (is_smooth ? 1 - a : 1 - max(a, b));
+        }
+    }
+    return passed / (static_cast<float>(kCosines) * kCosines * kCosines * kCosines);
+}
+
+CoatedBase base_of_coat(const Material& coat, CoatModel model) {
+    const float n = coat.ior;
+    const Facets facets = facets_of(coat);
+    const float width = facets.width;
     float in = 0, lost_inside = 0;
     for (int k = 0; k < kCosines; ++k) {
         const float z = (static_cast<float>(k) + 0.5f) / kCosines, weight = 2 * z / kCosines;
@@ -95,23 +119,12 @@ CoatedBase base_of_coat(const Material& coat, CoatModel model) {
         in += weight * here.transmitted;
         const Shares inwards = shares_at(facets, z, 1 / n);
         lost_inside += weight * (1 - inwards.reflected - inwards.transmitted);
-        ours[static_cast<std::size_t>(k)] = f0 + (f90 - f0) * here.schlick;
     }
     // By reciprocity the share in / n^2 leaves. This sum is smoother than that of what is reflected totally or not.
     float inside = max(1 - in / (n * n) - lost_inside, 0.0f);
     if (model == CoatModel::Mitsuba && width > kSmoothWidth)
         inside = (63 * inside + shares_at(facets, 1, 1 / n).reflected) / 64; // its mean of 64 rows, both ends in full
-    const bool is_smooth = !(width > kSmoothWidth) && coat.energy == MicrofacetEnergy::Compensated;
-    float left = 0;
-    for (int i = 0; i < kCosines; ++i) {
-        for (int o = 0; o < kCosines; ++o) {
-            const float a = ours[static_cast<std::size_t>(i)], b = ours[static_cast<std::size_t>(o)];
-            const float weight = (2 * static_cast<float>(i) + 1) * (2 * static_cast<float>(o) + 1);
-            left += weight * (is_smooth ? 1 - a : 1 - max(a, b));
-        }
-    }
-    left /= static_cast<float>(kCosines) * kCosines * kCosines * kCosines;
-    return {in * in / (n * n * (1 - inside)) / left, inside};
+    return {in * in / (n * n * (1 - inside)) / passed_by_reflection(coat), inside};
 }
 
 void set_coated_color(Surface& surface, const TextureValue& color, CoatModel model, bool is_dyed) {

@@ -28,6 +28,10 @@ struct CoatedBase {
 /// T the transmittance of single scattering (Walter et al. 2007) with masking that is separable.
 CoatedBase base_of_coat(const Material& coat, CoatModel model);
 
+/// Returns the share of a white sky's light that the dielectric reflection of `coat` lets through to the base and out
+/// again in our model. What counts is as in base_of_coat().
+float passed_by_reflection(const Material& coat);
+
 /// Sets the colour of a diffuse surface beneath the coat that `surface` has already. `is_dyed`: by each reflection
 /// inside, which saturates it.
 void set_coated_color(Surface& surface, const TextureValue& color, CoatModel model, bool is_dyed);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/described/disney.h"
 #include "formats/described/make_surface.h"
 #include "formats/mitsuba/bsdfs.h"
 #include "math/portable_math.h"
@@ -24,13 +25,9 @@ Surface Bsdfs::principled(Object& bsdf) {
         parameters.leave_out({name}, "it has no texture", sink);
         return missing;
     };
-    set_color(surface, &M::base_color, &M::base_color_texture, color(bsdf, "base_color", 0.5f));
     set_number(surface, &M::roughness, &M::roughness_texture, textures_.number(bsdf, "roughness", 0.5f));
     if (!is_thin) set_number(surface, &M::metallic, &M::metallic_texture, textures_.number(bsdf, "metallic", 0));
     material.transmission_weight = number("spec_trans", 0);
-    const bool is_clear = material.transmission_weight == 1 && material.metallic == 0;
-    if (is_clear && !is_thin && !material.metallic_texture.has_image()) // two interfaces have the colour together
-        set_color(surface, &M::base_color, &M::base_color_texture, color(bsdf, "base_color", 0.5f), Curve::Root);
     material.thin_walled = is_thin;
     material.has_relative_ior = !is_thin && material.transmits();
     if (parameters.contains("eta")) {
@@ -40,7 +37,9 @@ Surface Bsdfs::principled(Object& bsdf) {
         material.ior = 2 / (1 - min(root, 0.99f)) - 1;
     }
     const float stretched = number("anisotropic", 0); // the widths are r^2 / a and r^2 a, a = sqrt(1 - 0.9 x)
-    if (stretched > 0 && !material.roughness_texture.has_image()) {
+    if (stretched > 0 && material.roughness_texture.has_image()) {
+        parameters.leave_out({"anisotropic"}, "anisotropy is ignored for textured roughness", sink);
+    } else if (stretched > 0) {
         const float a = sqrt(1 - 0.9f * stretched), width = material.roughness * material.roughness;
         set_roughness(surface, constant(grey(max(width / a, 1e-3f))), constant(grey(max(width * a, 1e-3f))),
                       Curve::RoughnessOfWidth);
@@ -51,10 +50,19 @@ Surface Bsdfs::principled(Object& bsdf) {
         set_color(surface, &M::diffuse_transmission_color, &M::diffuse_transmission_color_texture,
                   color(bsdf, "base_color", 0.5f));
     } else {
-        material.coat_weight = 0.25f * number("clearcoat", 0);
-        material.coat_roughness = sqrt(lerp(0.1f, 0.001f, number("clearcoat_gloss", 0)));
+        const float clearcoat = number("clearcoat", 0), gloss = number("clearcoat_gloss", 0);
+        set_disney_coat(material, clearcoat, gloss);
     }
-    material.fuzz_weight = number("sheen", 0);
+    set_disney_sheen(material, number("sheen", 0));
+    const bool is_clear = material.transmission_weight == 1 && material.metallic == 0;
+    const TextureValue base = color(bsdf, "base_color", 0.5f);
+    if (is_clear && !is_thin && !material.metallic_texture.has_image()) { // two interfaces have the colour together
+        set_color(surface, &M::base_color, &M::base_color_texture, base, Curve::Root);
+    } else {
+        // A thin wall reflects only as far as it is clear.
+        set_disney_reflection(material, is_thin ? material.transmission_weight : 1.0f);
+        set_disney_color(surface, base);
+    }
     for (const char* const name : {"spec_tint", "sheen_tint", "flatness"}) {
         const TextureValue value = textures_.number(bsdf, name, 0);
         if (value.has_image() || value.factor.r > 0)

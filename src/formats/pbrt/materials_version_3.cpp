@@ -1,5 +1,6 @@
 #include <array>
 
+#include "formats/described/disney.h"
 #include "formats/pbrt/colors.h"
 #include "formats/pbrt/materials.h"
 #include "math/portable_math.h"
@@ -157,19 +158,20 @@ Surface disney(const MaterialSource& source) {
     Surface surface = make_surface(MaterialKind::MetallicRoughness);
     Parameters& parameters = source.parameters;
     Material& material = surface.material;
-    set_color(surface, &M::base_color, &M::base_color_texture, source.textures.color(parameters, "color", grey(0.5f)));
     set_number(surface, &M::metallic, &M::metallic_texture, source.textures.number(parameters, "metallic", 0));
     set_number(surface, &M::roughness, &M::roughness_texture, source.textures.number(parameters, "roughness", 0.5f));
     const auto number = [&](const char* name, double missing) {
         return clamp(static_cast<float>(parameters.number(name, missing, source.context.sink)), 0.0f, 1.0f);
     };
-    material.coat_weight = 0.25f * number("clearcoat", 0);
-    material.coat_roughness = 1 - number("clearcoatgloss", 1);
+    const float clearcoat = number("clearcoat", 0), gloss = number("clearcoatgloss", 1);
+    set_disney_coat(material, clearcoat, gloss);
     material.transmission_weight = number("spectrans", 0);
     material.thin_walled = parameters.truth("thin", false, source.context.sink);
     material.has_relative_ior = material.transmits() && !material.thin_walled;
     set_index(source, material.has_relative_ior ? kLeastIor : 1, surface);
-    material.fuzz_weight = number("sheen", 0);
+    set_disney_sheen(material, number("sheen", 0));
+    set_disney_reflection(material, 1);
+    set_disney_color(surface, source.textures.color(parameters, "color", grey(0.5f)));
     for (const char* const name :
          {"speculartint", "anisotropic", "sheentint", "scatterdistance", "flatness", "difftrans"})
         parameters.leave_out({name}, "the nearest material has none", source.context.sink);
