@@ -58,7 +58,7 @@ MUTATIONS = [
     ("layers of light paths pass thin walls unseen", "statistical/thin_walls", ("src/integrators/path/layer_listeners.h", "if (job_.passes_thin_walls) {", "if (false) {")),
     ("solids that touch leave air between", "unit/nest_solids statistical/nested_solids", ("src/device_scene/close_gaps.cpp", "point + 2 * later.gap * directions[i]", "point + 0 * later.gap * directions[i]")),
     ("what is near counts as touching", "unit/nest_solids", ("src/device_scene/close_gaps.cpp", "<= gap * gap) return true;", "<= 1e4f * gap * gap) return true;")),
-    ("dispersion without the density of two channels", "statistical/openpbr_lobes",
+    ("dispersion without the density of two channels", "statistical/openpbr_lobes statistical/bsdf_sampling",
      ("src/shading/lobes/glass_lobe.h", "pdf += (1.0f / 3.0f) * value.pdf;", "pdf = value.pdf;")),
     ("all colours refracted as red", "statistical/openpbr_lobes",
      ("src/shading/lobes/glass_lobe.h", "static_cast<float>(channel - 1) * spread", "-1.0f * spread")),

@@ -40,6 +40,16 @@ inline float narrowest_alpha(const Bsdf& bsdf) {
     return least;
 }
 
+/// Returns each channel's index inside over that outside; they differ in dispersed glass alone.
+inline Rgb inner_iors(const Bsdf& bsdf) {
+    for (int i = 0; i < bsdf.layer_count; ++i) {
+        if (bsdf.layers[i].kind != LobeKind::Glass) continue;
+        const GlassLobe glass = bsdf.layers[i].glass.unpacked();
+        return {glass.of_channel(0).ior, glass.of_channel(1).ior, glass.of_channel(2).ior};
+    }
+    return grey(bsdf.inner_ior());
+}
+
 /// Returns lobes with parameters of OpenPBR that glTF does not have, and those that other renderers' files name.
 inline std::vector<BsdfCase> openpbr_bsdf_cases() {
     const auto metal = [](float roughness, ReflectionParameters p) {
@@ -127,7 +137,17 @@ inline std::vector<BsdfCase> openpbr_bsdf_cases() {
         {"glass of Beckmann",
          make_reflection({.base_color = {1.0f, 0.9f, 0.7f}, .roughness = 0.5f, .solid = 1, .is_beckmann = true})},
         {"glass of one bounce",
-         make_reflection({.base_color = {1.0f, 0.9f, 0.7f}, .roughness = 0.6f, .solid = 1, .is_single = true})}};
+         make_reflection({.base_color = {1.0f, 0.9f, 0.7f}, .roughness = 0.6f, .solid = 1, .is_single = true})},
+        {"dispersed glass",
+         make_reflection({.base_color = {1.0f, 0.9f, 0.7f}, .roughness = 0.5f, .solid = 1, .dispersion = 0.2f})},
+        {"fuzz on varnish on dispersed, filmed glass",
+         make_fuzz(make_coated(make_reflection({.base_color = {1.0f, 0.9f, 0.7f},
+                                                .roughness = 0.6f,
+                                                .solid = 1,
+                                                .film = {.weight = 0.8f, .ior = 1.8f, .thickness = 0.4f},
+                                                .dispersion = 0.3f}),
+                               0.5f, 0.4f, 1.5f),
+                   {0.4f, 0.5f, 0.8f}, 0.6f)}};
 }
 
 /// Returns layers on each other and on every base.

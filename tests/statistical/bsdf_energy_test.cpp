@@ -190,8 +190,8 @@ TEST_CASE("every bsdf is reciprocal, refraction up to the squares of the indices
             const Rgb there = f_of(c.bsdf, wo, wi);
             Rgb back = f_of(c.bsdf, wi, wo);
             if (wo.z * wi.z < 0) {
-                const float ior = c.bsdf.inner_ior(), eta = wo.z > 0 ? ior : 1.0f / ior;
-                back = (eta * eta) * back; // f(wo, wi) / n_i^2 = f(wi, wo) / n_o^2
+                const Rgb ior = inner_iors(c.bsdf), ior2 = ior * ior; // f(wo, wi) / n_i^2 = f(wi, wo) / n_o^2
+                back = wo.z > 0 ? ior2 * back : Rgb{back.r / ior2.r, back.g / ior2.g, back.b / ior2.b};
             }
             const float size = std::max(max_component(there), max_component(back));
             if (size < 1e-12f) continue;

@@ -128,14 +128,79 @@ DirectionChart chart_through(Vec3 wo, const Bsdf& glass) {
 }
 
 /// Returns the heights of wi at which eval() and pdf() may be discontinuous: the horizon and, for glass, the direction
-/// whose half vector lies in the surface. No microfacet refracts beyond that.
+/// whose half vector lies in the surface, in each channel. No microfacet refracts beyond that.
 std::vector<double> jumps_of(const Bsdf& bsdf, Vec3 wo) {
     std::vector<double> jumps = {0};
-    if (bsdf.inner_ior() != 1) jumps.push_back(-static_cast<double>(wo.z) / static_cast<double>(eta_from(bsdf, wo)));
+    const Rgb iors = inner_iors(bsdf);
+    for (const float ior : {iors.r, iors.g, iors.b}) {
+        const double height = -static_cast<double>(wo.z) / static_cast<double>(wo.z > 0 ? ior : 1.0f / ior);
+        if (ior != 1 && height != jumps.back()) jumps.push_back(height);
+    }
     return jumps;
 }
 
+/// Numbers of tested lobes by kind and parameter, so that a kind without a test is noticed.
+struct TestedLobes {
+    int kinds[static_cast<int>(LobeKind::Fuzz) + 1] = {};
+    int dispersed = 0, filmed = 0, filmed_glass = 0, tinted_metal = 0, bent_coats = 0, stretched_bent_coats = 0;
+    int beckmann[3] = {}, single[3] = {}, stretched[3] = {}; // reflections and metals, glass, thin walls
+    int stacks_of_three_or_more = 0;
+
+    void count(const Microfacets& widths, int what) {
+        beckmann[what] += widths.is_beckmann ? 1 : 0;
+        single[what] += widths.is_single ? 1 : 0;
+        stretched[what] += widths.x != widths.y ? 1 : 0;
+    }
+    void count(const Lobe& lobe) {
+        ++kinds[static_cast<int>(lobe.kind)];
+        if (lobe.kind == LobeKind::Metal) count(lobe.metal.unpacked().widths, 0);
+        if (lobe.kind == LobeKind::Thin) count(lobe.thin.widths, 2);
+        if (lobe.kind == LobeKind::Filmed) {
+            const FilmedLobe reflection = lobe.filmed.unpacked();
+            count(reflection.widths, 0);
+            filmed += reflection.film.weight > 0 ? 1 : 0;
+            tinted_metal += reflection.tint == Rgb{1, 1, 1} ? 0 : 1;
+        }
+        if (lobe.kind == LobeKind::Glass) {
+            const GlassLobe glass = lobe.glass.unpacked();
+            count(glass.widths, 1);
+            dispersed += glass.spread > 0 ? 1 : 0;
+            filmed_glass += glass.film.weight > 0 ? 1 : 0;
+        }
+        if (lobe.kind == LobeKind::Coat && lobe.coat.normal.z < 1) {
+            ++bent_coats;
+            stretched_bent_coats += lobe.coat.wide_and_turn.bits != 0 ? 1 : 0;
+        }
+    }
+};
+
 } // namespace
+
+TEST_CASE("the bsdfs whose sampling is tested have every kind of lobe, every parameter of one, and stacks of three") {
+    TestedLobes all;
+    for (const BsdfCase& c : rough_bsdf_cases()) {
+        all.count(c.bsdf.base);
+        for (int i = 0; i < c.bsdf.layer_count; ++i) all.count(c.bsdf.layers[i]);
+        all.stacks_of_three_or_more += c.bsdf.layer_count + (c.bsdf.base.kind == LobeKind::None ? 0 : 1) >= 3 ? 1 : 0;
+    }
+    for (std::size_t kind = 1; kind < std::size(all.kinds); ++kind) {
+        INFO("LobeKind " << kind);
+        CHECK(all.kinds[kind] > 0);
+    }
+    for (const int what : {0, 1, 2}) {
+        CAPTURE(what);
+        CHECK(all.beckmann[what] > 0);
+        CHECK(all.single[what] > 0);
+        CHECK(all.stretched[what] > 0);
+    }
+    CHECK(all.dispersed > 0);
+    CHECK(all.filmed > 0);
+    CHECK(all.filmed_glass > 0);
+    CHECK(all.tinted_metal > 0);
+    CHECK(all.bent_coats > all.stretched_bent_coats);
+    CHECK(all.stretched_bent_coats > 0);
+    CHECK(all.stacks_of_three_or_more >= 8);
+}
 
 TEST_CASE("every bsdf samples directions by its pdf, with the weight eval over pdf") {
     const auto samples = static_cast<uint32_t>(effort(60'000, 10'000'000));
