@@ -178,7 +178,7 @@ MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + lobe_mutatio
     ("a solid that absorbs only what leaves it outwards", "statistical/solid_absorption", ("src/device_scene/solid_absorption.h", "if (material.absorbs() && points_inwards(", "if (material.absorbs() && !points_inwards(")),
     ("of two solids that overlap, the later one absorbs", "statistical/solid_absorption", ("src/device_scene/solid_absorption.h", "start.instance <= end.instance;", "start.instance > end.instance;")),
     ("particles that no solid absorbs", "statistical/solid_absorption", ("src/integrators/subpaths/subpath_vertex.h", "((weights = weights * passed), ...);", "static_cast<void>(passed);")),
-    ("a film on metal of another phase", "statistical/thin_film", ("src/shading/lobes/thin_film.h", "const float path = 2.0f * film.ior", "const float path = 1.9f * film.ior")),
+    ("a film on metal of another phase", "statistical/thin_film statistical/khronos_albedo", ("src/shading/lobes/thin_film.h", "const float path = 2.0f * film.ior", "const float path = 1.9f * film.ior")),
     ("stretched microfacets sampled as even ones", "statistical/bsdf_sampling", ("src/shading/lobes/microfacets.h", "const Vec3 m = {x * (s * cos_phi + w.x), y *", "const Vec3 m = {x * (s * cos_phi + w.x), x *")),
     ("a share of glass on all of the rest", "statistical/bsdf_energy", ("src/shading/lobes/glass_lobe.h", "transmittance.light = transmittance.light * (1.0f - weight);", "")),
     ("light through a leaf that its reflection does not reduce", "statistical/bsdf_energy", ("src/shading/lobes/translucent_lobe.h", "(transmittance.light_of_delta() * share", "(transmittance.light * share")),
