@@ -32,6 +32,7 @@ MUTATIONS = [
     ("a coat's colour without its texture above what glows", "statistical/stretched_layers", ("src/shading/light_set.h", "if (const TextureRef& ref = surface.coat_color_texture; ref.has_image()) {", "if (const TextureRef& ref = surface.coat_color_texture; false) {")),
     ("a coat is stretched about another tangent where it is bent", "statistical/stretched_layers", ("src/shading/lobes/coat_lobe.h", "if (is_bent()) tangent =", "if (false) tangent =")),
     ("a coat does not turn with its material's rotation", "statistical/stretched_layers", ("src/device_scene/surface.h", "material.coat_anisotropy_rotation,", "0,")),
+    ("metal lacks 0.2 % of the light of further bounces", "statistical/bsdf_energy", ("src/shading/lobes/conductor_lobe.h", "(cosine * lost_o * lost_i / lost) * more", "(cosine * lost_o * lost_i / lost) * (0.998f * more)")),
     ("a rough thin wall without the light of further bounces", "statistical/khronos_albedo", ("src/shading/lobes/thin_lobe.h", "share * (once.f + more)", "share * (once.f + 0.0f * more)")),
     ("a thin wall's microfacets do not turn", "statistical/stretched_layers", ("src/shading/lobes/thin_lobe.h", "widths.turned({wo.x, wo.y, abs(wo.z)}), i = widths.turned({wi.x, wi.y, abs(wi.z)})", "Vec3{wo.x, wo.y, abs(wo.z)}, i = Vec3{wi.x, wi.y, abs(wi.z)}")),
     ("a reflection that is sent back is even", "statistical/stretched_layers", ("src/shading/make_reflection.h", "if (p.has_plain_microfacets() && !p.is_tinted()) {\n            const", "if (true) {\n            const")),

@@ -30,6 +30,8 @@ MeanWeight furnace_range(Make make, float side, uint32_t points) {
 }
 
 uint32_t furnace_points() { return static_cast<uint32_t>(effort(1 << 12, 1 << 20)); }
+/// Returns so many points that means of metals are off by at most 1e-4.
+uint32_t many_points() { return static_cast<uint32_t>(effort(1 << 16, 1 << 20)); }
 
 Rgb f_of(const Bsdf& bsdf, Vec3 wo, Vec3 wi) { return (1.0f / std::fabs(wi.z)) * bsdf.eval(wo, wi); }
 
@@ -54,12 +56,12 @@ TEST_CASE("white diffuse and smooth glTF materials, a perfect mirror and smooth 
             }
 }
 
-TEST_CASE("a rough conductor that absorbs nothing returns all light to 0.2 %") {
+TEST_CASE("a rough conductor that absorbs nothing returns all light to 0.1 %") {
     const MeanWeight range =
-        furnace_range([](float r) { return make_conductor(grey(0), grey(2), r); }, 1, furnace_points());
-    INFO("mean weight from " << range.least() << " to " << range.largest());
-    CHECK(range.r > 0.998);
-    CHECK(range.b < 1.001);
+        furnace_range([](float r) { return make_conductor(grey(0), grey(2), r); }, 1, many_points());
+    INFO("mean weight from " << range.r << " to " << range.b);
+    CHECK(range.r > 0.999);
+    CHECK(range.b < 1.0005);
 }
 
 TEST_CASE("the furnace test detects a rough conductor without its second lobe") {
@@ -76,25 +78,34 @@ TEST_CASE("the furnace test detects a rough conductor without its second lobe") 
     CHECK(mean < 0.5);
 }
 
-TEST_CASE("rough glass returns all light to 0.3 % from outside and to 0.5 % from inside") {
-    for (const float ior : {1.1f, 1.33f, 1.5f, 2.4f})
+TEST_CASE(
+    "rough glass returns all light to 0.2 % from outside and to 0.4 % from inside, of index 1.1 to 0.3 and 0.5 %") {
+    const struct {
+        float ior;
+        double least_outside, least_inside; // from inside the tables miss the critical angle's kink
+    } rows[] = {{1.1f, 0.997, 0.9955}, {1.33f, 0.998, 0.996}, {1.5f, 0.998, 0.996}, {2.4f, 0.998, 0.998}};
+    const auto points = static_cast<uint32_t>(effort(1 << 14, 1 << 20));
+    for (const auto& row : rows)
         for (const float side : {1.0f, -1.0f}) {
             const MeanWeight range =
-                furnace_range([ior](float r) { return make_dielectric(ior, r, grey(1)); }, side, furnace_points());
-            INFO("ior " << ior << " side " << side << ": mean weight from " << range.least() << " to "
-                        << range.largest());
-            CHECK(range.r > (side > 0 ? 0.997 : 0.995)); // from inside the tables miss the critical angle's kink
+                furnace_range([&](float r) { return make_dielectric(row.ior, r, grey(1)); }, side, points);
+            INFO("ior " << row.ior << " side " << side << ": mean weight from " << range.r << " to " << range.b);
+            CHECK(range.r > (side > 0 ? row.least_outside : row.least_inside));
             CHECK(range.b < 1.002);
         }
 }
 
-TEST_CASE("white glTF materials return all light to 0.4 %, metals to 0.2 %") {
-    for (const float metallic : {0.0f, 0.5f, 1.0f}) {
+TEST_CASE("white glTF materials return all light to 0.35 %, half metals to 0.2 %, metals to 0.1 %") {
+    const struct {
+        float metallic;
+        double least; // dielectrics lose most at roughness 0.033, within 1e-4 of the horizon
+    } rows[] = {{0.0f, 0.9965}, {0.5f, 0.998}, {1.0f, 0.999}};
+    for (const auto& row : rows) {
         const MeanWeight range = furnace_range(
-            [metallic](float r) { return make_metallic_roughness(grey(1), metallic, r, 1.5f); }, 1, furnace_points());
-        INFO("metallic " << metallic << ": mean weight from " << range.least() << " to " << range.largest());
-        CHECK(range.r > (metallic > 0 ? 0.998 : 0.996));
-        CHECK(range.b < 1.001);
+            [&](float r) { return make_metallic_roughness(grey(1), row.metallic, r, 1.5f); }, 1, many_points());
+        INFO("metallic " << row.metallic << ": mean weight from " << range.r << " to " << range.b);
+        CHECK(range.r > row.least);
+        CHECK(range.b < 1.0005);
     }
 }
 
@@ -120,7 +131,7 @@ TEST_CASE("a weighted reflection equals that of the index at weight 1, and white
                     return make_reflection({.base_color = grey(1), .roughness = r, .weight = 0.7f, .through = through});
                 },
                 side, furnace_points());
-            INFO("through " << through << ": mean weight from " << range.least() << " to " << range.largest());
+            INFO("through " << through << ": mean weight from " << range.r << " to " << range.largest());
             CHECK(range.r > (through > 0 ? 0.9 : 0.997));
             CHECK(range.b < 1.001);
         }
@@ -208,23 +219,63 @@ TEST_CASE("bases beneath layers lose little light, and sheen alone reflects at m
     const uint32_t points = furnace_points();
     const auto varnished = [](float r) { return make_coated(make_diffuse(grey(1)), 1, r, 1.5f); };
     const MeanWeight on_white = furnace_range(varnished, 1, points);
-    INFO("varnish on white: from " << on_white.least() << " to " << on_white.largest());
+    INFO("varnish on white: from " << on_white.r << " to " << on_white.largest());
     CHECK(on_white.r > 0.93);
     CHECK(on_white.b < 1.001);
     const auto mirrored = [](float r) { return make_coated(make_conductor(grey(0), grey(2), 0), 1, r, 1.5f); };
     const MeanWeight on_mirror = furnace_range(mirrored, 1, points);
-    INFO("varnish on a mirror: from " << on_mirror.least() << " to " << on_mirror.largest());
+    INFO("varnish on a mirror: from " << on_mirror.r << " to " << on_mirror.largest());
     CHECK(on_mirror.r > 0.995);
     CHECK(on_mirror.b < 1.001);
     const auto velvet = [](float r) { return make_sheen(make_diffuse(grey(1)), grey(1), r); };
     const MeanWeight on_velvet = furnace_range(velvet, 1, points);
-    INFO("white velvet: from " << on_velvet.least() << " to " << on_velvet.largest());
+    INFO("white velvet: from " << on_velvet.r << " to " << on_velvet.largest());
     CHECK(on_velvet.b < 1.001);
     const auto sheen = [](float r) { return make_sheen(Bsdf{}, grey(1), r); };
     const MeanWeight alone = furnace_range(sheen, 1, points);
-    INFO("sheen alone: from " << alone.least() << " to " << alone.largest());
+    INFO("sheen alone: from " << alone.r << " to " << alone.largest());
     CHECK(alone.largest() > 0.4);
     CHECK(alone.b < 1.001);
+}
+
+TEST_CASE(
+    "a coat on a white mirror returns all light to 0.3 %, and on rough white metal loses what it reflects downwards") {
+    // A layer leaves at most 1 - max(A(o), A(i)) to what is beneath, with its albedo A (LayerTransmittance::pass). Of
+    // the light that white metal scatters from o to where the coat's albedo is larger, the difference is lost, though a
+    // real coat would return it to the metal again. Neither the coat's tables nor its own light lose more than 0.3 %.
+    double least = 1;
+    for (const float roughness : {0.05f, 0.2f, 0.5f, 1.0f}) {
+        const SchlickLobe coat = {grey(0), 0, roughness * roughness, f0_from_ior(1.5f)};
+        const SchlickLobe::Average average = coat.make_average();
+        const auto albedo = [&](float cosine) { return static_cast<double>(coat.albedo_at(cosine, average).coat); };
+        for (const float cosine : kCosines) {
+            const Vec3 wo = direction_at(cosine);
+            const Bsdf alone = make_coated(Bsdf{}, 1, roughness, 1.5f);
+            const Bsdf mirror = make_coated(make_conductor(grey(0), grey(2), 0), 1, roughness, 1.5f);
+            const double all = mean_weight(alone, wo, 1 << 15).g + static_cast<double>(mirror.specular(wo).mirror.g);
+            INFO("coat of roughness " << roughness << " at cosine " << cosine << ", on a mirror " << all);
+            CHECK(all > 0.997);
+            CHECK(all < 1.001);
+            for (const float width : {0.2f, 0.35f, 0.6f, 1.0f}) {
+                const Bsdf metal = make_conductor(grey(0), grey(2), width);
+                double lost = 0;
+                constexpr uint32_t kPoints = 1 << 12;
+                for (uint32_t i = 0; i < kPoints; ++i) {
+                    const SamplePoint p = even_point(i, kPoints);
+                    const BsdfSample s = metal.sample(wo, p.lobe, p.u);
+                    if (!(s.pdf > 0)) continue;
+                    lost += static_cast<double>(s.weight.g) * std::max(albedo(s.wi.z) - albedo(cosine), 0.0) / kPoints;
+                }
+                const double coated = mean_weight(make_coated(metal, 1, roughness, 1.5f), wo, 1 << 13).g;
+                INFO("on metal of roughness " << width << ": " << coated << ", lost " << lost);
+                CHECK(coated + lost == doctest::Approx(1).epsilon(0.002)); // at most 0.004 off
+                least = std::min(least, coated);
+            }
+        }
+    }
+    INFO("least " << least);
+    CHECK(least > 0.945);
+    CHECK(least < 0.96); // a mended coat is noticed, and then the document (docs/materials.md) is wrong
 }
 
 TEST_CASE("diffuse and glossy light add up to all light, and each equals its lobe's light") {
