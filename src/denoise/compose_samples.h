@@ -19,7 +19,7 @@ struct ComposeSamples {
     HD void operator()(uint32_t pixel) const {
         const float features = first_features + static_cast<float>(sums.exact.at(SampleSums::kFeatures, pixel));
         const Float4 emission = sums.all_emission(pixel), loose = sums.loose(pixel);
-        Rgb light = rgb_of(emission) + sums.all_diffuse_color(pixel) * rgb_of(signals.diffuse[pixel]);
+        Rgb light = sums.all_diffuse_color(pixel) * rgb_of(signals.diffuse[pixel]);
         if (has_gloss) light += sums.all_gloss_color(pixel) * rgb_of(signals.gloss[pixel]);
         light += sums.all_normal(pixel).w * mirrored_light(mirrors, mirrored, pixel);
         Rgb of_neighbours = {0, 0, 0};
@@ -41,15 +41,15 @@ struct ComposeSamples {
             of_neighbours = lerp(of_neighbours, (neighbour_features / own.w) * rgb_of(own), trust);
         }
         light += of_neighbours;
-        // Samples that fit no guide are used unfiltered. If only rays without light have hit such surfaces, the rest
-        // represents them.
+        // Scattered light of samples that fit no guide is used unfiltered. If only rays without light have hit such
+        // surfaces, the rest represents them. Emission is known of all rays, so that no small lamp is lost.
         const float loose_features = emission.w;
         if (loose.w > 0) {
             light += (loose_features / loose.w) * rgb_of(loose);
         } else if (loose_features < features) {
             light = (features / (features - loose_features)) * light;
         }
-        picture[pixel] = with_w((1.0f / features) * light, 0);
+        picture[pixel] = with_w((1.0f / features) * (light + rgb_of(emission)), 0);
     }
 
 private:

@@ -147,7 +147,7 @@ struct GatherFeatures {
                 sums.neighbour_diffuse[slot][pixel].w = float_of(neighbour);
             }
         }
-        if (is_free || slot == kNeighbourSurfaces) return SampledSurfaces::add(sums.emission[pixel], {0, 0, 0}, 1);
+        if (is_free || slot == kNeighbourSurfaces) return SampledSurfaces::add(sums.emission[pixel], emission, 1);
         SampledSurfaces::add(sums.neighbour_diffuse[slot][pixel], diffuse);
         SampledSurfaces::add(sums.neighbour_gloss[slot][pixel], gloss, 1);
         SampledSurfaces::add(sums.emission[pixel], emission);
@@ -187,10 +187,10 @@ struct GatherLight {
         bool is_free = false;
         const int slot = samples.slot_of(pixel, found, is_free);
         if (is_free || slot == kNeighbourSurfaces) {
-            SampleSums::Light::add(exact, SampleSums::kLoose, pixel, all);
+            SampleSums::Light::add(exact, SampleSums::kLoose, pixel, all - emission);
             exact.add(SampleSums::kLooseCount, pixel, 1);
             if (adds_features) exact.add(SampleSums::kLooseFeatures, pixel, 1);
-            return;
+            return add_emission();
         }
         SampleSums::Light::add(exact, SampleSums::kNeighbour, pixel, all - emission);
         exact.add(SampleSums::kNeighbourCount, pixel, 1);

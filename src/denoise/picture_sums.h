@@ -62,10 +62,10 @@ struct PictureSums {
 
     // Sums of the features of the first samples, which every part of a picture has. They decide which surfaces a pixel
     // distinguishes, so that what a sample adds depends on no other sample.
-    Float4* normal;        // normal of the guide's surface; their number
-    Float4* emission;      // rgb of emission; number of loose samples, whose emission is excluded
-    Float4* diffuse_color; // rgb of divisors of the guide's surface
-    Float4* gloss_color;   // divisors of the guide's surface for the gloss signal
+    Float4* normal;                                // normal of the guide's surface; their number
+    Float4* emission;                              // rgb of emission; number of loose samples
+    Float4* diffuse_color;                         // rgb of divisors of the guide's surface
+    Float4* gloss_color;                           // divisors of the guide's surface for the gloss signal
     Float4* neighbour_diffuse[kNeighbourSurfaces]; // divisors of another surface; bits of a pixel whose guide shows it,
                                                    // kNoHit: none
     Float4* neighbour_gloss[kNeighbourSurfaces];   // for the other signal; their number

@@ -23,7 +23,21 @@ HD inline SplitLight split_light(const NoisyFrameView& frame, uint32_t pixel) {
         diffuse = frame.splits_light() ? rgb_of(frame.diffuse[pixel]) : scattered;
         gloss = frame.splits_light() ? not_negative(scattered - diffuse) : Rgb{0, 0, 0};
     }
-    return {not_negative(diffuse), gloss, diffuse_divisor(frame, pixel), gloss_divisor(frame, pixel)};
+    diffuse = not_negative(diffuse);
+    const Rgb divisor = diffuse_divisor(frame, pixel);
+    if (frame.splits_light()) {
+        // Where the base is black, sheen, fuzz and what a leaf transmits are of the other signal, because no divisor
+        // says what they reflect.
+        const auto move = [](float of_divisor, float& of_diffuse, float& of_gloss) {
+            if (of_divisor >= kLeastKnown) return;
+            of_gloss += of_diffuse;
+            of_diffuse = 0;
+        };
+        move(divisor.r, diffuse.r, gloss.r);
+        move(divisor.g, diffuse.g, gloss.g);
+        move(divisor.b, diffuse.b, gloss.b);
+    }
+    return {diffuse, gloss, divisor, gloss_divisor(frame, pixel)};
 }
 
 } // namespace pertev
