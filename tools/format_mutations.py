@@ -244,5 +244,6 @@ MUTATIONS = [
     ("large triangles keep the linear coordinates of mappings", "unit/project_textures", ("src/formats/described/divide_triangles.cpp", "1.0 / 1024", "1.0 / 4")),
     ("divided triangles get some without area", "unit/project_textures", ("src/formats/described/divide_triangles.cpp", "find_if(left, is_middle)", "find_if_not(left, is_middle)")),
     ("triangles with a power each are divided", "unit/project_textures", ("src/formats/described/project_textures.cpp", "has_power ? 0 :", "has_power && left == 0 ? 0 :")),
+    ("pbrt: two files include each other without end", "unit/read_pbrt", ("src/formats/pbrt/statements.cpp", "++repeated_ > kMostRepeated", "++repeated_ > (std::size_t(1) << 40)")),
     ("meshes without coordinates lose those of mappings", "unit/project_textures", ("src/formats/described/finish_meshes.cpp", "set < mesh.uv.size(); ++set) take", "set < 0 * mesh.uv.size(); ++set) take")),
 ]

@@ -343,6 +343,8 @@ TEST_CASE("pbrt: files that include themselves, or grow without reason, end") {
     const fs::path twice = test::write_text(
         folder / "twice.pbrt", std::string(1 << 16, '#') + "\nInclude \"twice.pbrt\" Include \"twice.pbrt\"\n");
     CHECK(test::thrown_error([&] { (void)read_scene(twice, {}, messages); })->code() == ErrorCode::OverLimit);
+    const fs::path small = test::write_text(folder / "small.pbrt", "Include \"small.pbrt\" Include \"small.pbrt\"\n");
+    CHECK(test::thrown_error([&] { (void)read_scene(small, {}, messages); })->code() == ErrorCode::OverLimit);
     std::string crowd = "WorldBegin ObjectBegin \"a\"\n";
     for (int i = 0; i < 1000; ++i) crowd += "Shape \"sphere\"\n";
     crowd += "ObjectEnd\n";

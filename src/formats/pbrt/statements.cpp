@@ -15,8 +15,9 @@
 namespace pertev::pbrt {
 namespace {
 
-constexpr std::size_t kMostFiles = 64;     // most includes in each other
-constexpr std::size_t kMostKept = 1 << 16; // states of begin statements in each other
+constexpr std::size_t kMostFiles = 64;      // most includes in each other
+constexpr std::size_t kMostRepeated = 4096; // inclusions of files that were included before
+constexpr std::size_t kMostKept = 1 << 16;  // states of begin statements in each other
 
 std::string_view text_of(const std::vector<std::byte>& bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -177,6 +178,9 @@ void Statements::read_file(Tokens& tokens, const FileLocation& location, bool ke
         throw Error(ErrorCode::BadInput, location, fmt::format("{} files include each other", files_));
     const auto path = context_.access.find(base_of(context_, location, name), name, context_.sink);
     if (!path) throw Error(ErrorCode::BadInput, location, fmt::format("there is no file {}", shortened(name)));
+    if (!included_.insert(*path).second && ++repeated_ > kMostRepeated)
+        throw Error(ErrorCode::OverLimit, location,
+                    fmt::format("the same files are included more than {} times", kMostRepeated));
     const std::vector<std::byte> bytes = read_unzipped(*path);
     const std::size_t depth = kept_.size();
     if (!keeps_state) kept_.push_back({.state = world_.state});

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,7 +22,7 @@ public:
     Statements(const Context& context, World& world) : context_(context), world_(world) {}
 
     /// Reads a text. `file` is its path, to which includes are relative. Throws Error(OverLimit) if the files of the
-    /// scene take more than the size of the first one justifies.
+    /// scene take more than the size of the first one justifies, or the same ones are included very often.
     void read(std::string_view text, const std::filesystem::path& file);
     /// The size of all texts so far.
     uint64_t bytes() const { return bytes_; }
@@ -96,6 +97,8 @@ private:
     std::vector<Kept> kept_;
     std::size_t files_ = 0; // open ones
     uint64_t bytes_ = 0, first_bytes_ = 0;
+    std::set<std::filesystem::path> included_;
+    std::size_t repeated_ = 0; // inclusions of files that were included before
 };
 
 } // namespace pertev::pbrt
