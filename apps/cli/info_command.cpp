@@ -230,9 +230,10 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Sink& sink) {
     facts.add("images", scene.images.size());
     facts.add("image_bytes", texture_bytes(scene));
     const uint64_t emissive = count_emissive_triangles(scene);
-    facts.add("lights", emissive + scene.lights.size() + (scene.environment ? 1 : 0)); // counted like render does
+    const bool has_environment = scene.environment && max_component(scene.environment->scale) > 0;
+    facts.add("lights", emissive + scene.lights.size() + (has_environment ? 1 : 0)); // counted like render does
     facts.add("emissive_triangles", emissive);
-    facts.add("environment", scene.environment ? "yes" : "no");
+    facts.add("environment", has_environment ? "yes" : "no");
     const Bounds3 bounds = bounds_of(scene);
     if (scene.origin_in_file == DoubleVec3{0, 0, 0}) {
         facts.add("bounds_low", bounds.lo);

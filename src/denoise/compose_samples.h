@@ -42,7 +42,7 @@ struct ComposeSamples {
         }
         light += of_neighbours;
         // Scattered light of samples that fit no guide is used unfiltered. If only rays without light have hit such
-        // surfaces, the rest represents them. Emission is known of all rays, so that no small lamp is lost.
+        // surfaces, the rest represents them. Emission is known of all rays, so that no small emitter is lost.
         const float loose_features = emission.w;
         if (loose.w > 0) {
             light += (loose_features / loose.w) * rgb_of(loose);

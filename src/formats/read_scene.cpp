@@ -71,6 +71,9 @@ Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, 
         choose_file_scene(path.string(), {}, options.file_scene);
     }
     if (scene.variants.empty() && !options.variant.empty()) choose_material_variant(path.string(), {}, options.variant);
+    const FormatReader* const reader = find_reader(path);
+    if (!options.defines.empty() && (reader == nullptr || reader->extension != ".xml"))
+        sink.warn(Remark("define", options.defines.front(), "only Mitsuba's files have values to be defined"));
     if (!defines_space(path)) convert_to_metres(options.space, scene);
     validate(scene, path.string(), sink);
     warn_of_invisible_materials(scene, path.string(), sink);

@@ -34,7 +34,7 @@ TEST_CASE("a denoised picture of few samples keeps the light of lamps smaller th
     Material lamp = white(0);
     lamp.emission = {50, 40, 30};
     Mesh lamps;
-    constexpr int kRows = 32; // a lamp has an eighth of a pixel's area
+    constexpr int kRows = 32; // each has an eighth of a pixel's area
     for (int i = 0; i < kRows * kRows; ++i) {
         const auto along = [](int k) { return (static_cast<float>(k) + 0.37f) * 0.125f - 2; };
         const Mesh one = sheet({along(i % kRows), 0.3f, along(i / kRows)}, {0, 0, 0.0055f}, {0.0055f, 0, 0});

@@ -22,3 +22,12 @@ TEST_CASE("extensions are compared without case everywhere") {
     CHECK(lumens_per_watt("A.GlB") == 1);
     CHECK(lumens_per_watt("A.OBJ") == kLumensPerWatt);
 }
+
+TEST_CASE("values that are defined for a file of another format are reported") {
+    ReadOptions options;
+    options.defines = {"a=1"};
+    Messages messages;
+    (void)read_scene("cornell-box", options, messages);
+    REQUIRE(messages.all().size() == 1);
+    CHECK(messages.all()[0].remark.setting == "define");
+}

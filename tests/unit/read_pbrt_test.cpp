@@ -203,6 +203,15 @@ TEST_CASE("pbrt: unknown types and parameters of statements before the world are
                      kFlat);
 }
 
+TEST_CASE("pbrt: integrators without global light are left out by name") {
+    for (const char* type : {"ao", "ambientocclusion", "directlighting", "function", "whitted"}) {
+        Messages messages;
+        (void)load_pbrt(fmt::format("Integrator \"{}\"\nWorldBegin\n{}", type, kFlat), messages);
+        REQUIRE(messages.left_out().size() == 1);
+        CHECK(left_out_at(messages, 1).find(type) != std::string::npos);
+    }
+}
+
 TEST_CASE("pbrt: a light of a surface that is not there, a motion and an unknown spectrum are reported by line") {
     Messages messages;
     (void)load_pbrt("WorldBegin\nAttributeBegin\nAreaLightSource \"diffuse\"\nMaterial \"interface\"\n" + kFlat +

@@ -146,6 +146,11 @@ void suggest_settings(View& view, const Context& context, Scene& scene) {
             "path",    "volpath",   "simplepath", "simplevolpath",    "bdpt",     "mlt",           "sppm", "ao",
             "whitted", "lightpath", "randomwalk", "ambientocclusion", "function", "directlighting"};
         leave_out_unknown_type(*view.integrator, "integrator", kIntegrators, sink);
+        constexpr std::array<std::string_view, 5> kWithoutGlobalLight = {"ao", "ambientocclusion", "directlighting",
+                                                                         "function", "whitted"};
+        if (std::ranges::find(kWithoutGlobalLight, view.integrator->type) != kWithoutGlobalLight.end())
+            sink.leave_out(
+                {integrator.location(), fmt::format("{} is left out; light is path traced", integrator.what())});
         integrator.ignore({"regularize",
                            "lightsampler",
                            "lightsamplestrategy",
