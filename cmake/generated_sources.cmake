@@ -35,7 +35,7 @@ add_custom_command(OUTPUT ${PERTEV_GENERATED_DIR}/embedded_files.cpp
   COMMENT "Embedding the laboratory's page" VERBATIM)
 pertev_embed(pertev_lab ${PERTEV_GENERATED_DIR}/embedded_files.cpp)
 
-# Tables of lobes: a quarter of a minute of one core, once. Sums stand side by side for the vectoriser, which divides where masks say no.
+# Tables of lobes: half a minute of one core, once. Sums stand side by side for the vectoriser, which divides where masks say no.
 add_executable(pertev_make_lobe_tables ${PROJECT_SOURCE_DIR}/tools/make_lobe_tables.cpp)
 target_link_libraries(pertev_make_lobe_tables PRIVATE fmt::fmt TBB::tbb)
 target_compile_options(pertev_make_lobe_tables PRIVATE -O3 -fno-trapping-math -fno-sanitize=all)
@@ -45,7 +45,8 @@ set(lobes ${PERTEV_GENERATED_DIR}/shading/lobes)
 file(MAKE_DIRECTORY ${lobes})
 set(lobe_files energy_table_data.h sheen_table_data.h beckmann_table_data.h lobe_table_data.cpp metal_lost.inl metal_schlick.inl metal_average_lost.inl
     metal_average_schlick.inl glass_lost.inl glass_average_lost.inl albedo.inl beckmann_lost.inl beckmann_schlick.inl beckmann_average_lost.inl
-    beckmann_glass_lost.inl beckmann_average_glass_lost.inl)
+    beckmann_glass_lost.inl beckmann_average_glass_lost.inl stretched_table_data.h stretched_lost.inl
+    stretched_average_lost.inl stretched_beckmann_lost.inl stretched_beckmann_average_lost.inl)
 list(TRANSFORM lobe_files PREPEND ${lobes}/)
 add_custom_command(OUTPUT ${lobe_files}
   DEPENDS pertev_make_lobe_tables COMMAND pertev_make_lobe_tables ${lobes} COMMENT "Integrating the tables of lobes" VERBATIM)

@@ -28,6 +28,7 @@
 #include <tbb/parallel_for.h>
 
 #include "beckmann_integrals.h"
+#include "stretched_integrals.h"
 
 namespace {
 
@@ -36,7 +37,7 @@ constexpr int kBeckmannRoughnessNodes = 20, kBeckmannIorNodes = 14;
 constexpr double kAlphaMin = 1e-3, kIorMin = 1.1, kIorMax = 3, kOvershoot = 2e-4;
 constexpr int kSheenMuNodes = 24, kSheenRoughnessNodes = 16;
 constexpr double kSheenRoughnessMin = 0.2;
-constexpr uint64_t kHash = 0x48939f502f48e6e2; // hash of the numbers of all tables
+constexpr uint64_t kHash = 0x169d5909efe2f5e9; // hash of the numbers of all tables
 
 constexpr int kHeights = 96, kAngles = 48; // sizes of the rule over the cap of visible normals
 
@@ -426,6 +427,20 @@ TableGroup sheen_table() {
             {{"float", "albedo", table}}};
 }
 
+TableGroup stretched_table() {
+    using S = StretchedTable;
+    const S ggx(false), beckmann(true);
+    return {"stretched_table",
+            fmt::format("inline constexpr int kMuNodes = {}, kAzimuthNodes = {}, kWidthNodes = {}, kRatioNodes = {},\n"
+                        "kAverageWidthNodes = {}, kAverageRatioNodes = {};\ninline constexpr float kWidthMin = {}f;\n",
+                        S::kMuNodes, S::kAzimuthNodes, S::kWidthNodes, S::kRatioNodes, S::kAverageWidthNodes,
+                        S::kAverageRatioNodes, S::kWidthMin),
+            {{"uint16_t", "stretched_lost", ggx.lost},
+             {"float", "stretched_average_lost", ggx.averages},
+             {"uint16_t", "stretched_beckmann_lost", beckmann.lost},
+             {"float", "stretched_beckmann_average_lost", beckmann.averages}}};
+}
+
 } // namespace
 
 int main(int count, char** arguments) {
@@ -434,7 +449,7 @@ int main(int count, char** arguments) {
         return 2;
     }
     const std::string folder = std::string(arguments[1]) + "/";
-    const TableGroup groups[] = {energy_tables(), sheen_table(), beckmann_table()};
+    const TableGroup groups[] = {energy_tables(), sheen_table(), beckmann_table(), stretched_table()};
     std::string all_numbers, definitions = kOrigin;
     for (const TableGroup& group : groups) {
         for (const Table& table : group.tables) all_numbers += table.numbers();

@@ -67,11 +67,16 @@ TEST_CASE("the largest weights of lobes and of stacks are those known, and their
         {"rough diffuse", [](float r, float q) { return make_rough_diffuse(grey(q), r); }, 1.5, 1.06},
         {"metal", [](float r, float) { return white_metal(r); }, 4.2, 1.35},
         {"Beckmann's metal",
+         [](float r, float) {
+             return make_metal(grey(0), grey(2), {.base_color = {}, .roughness = r, .is_beckmann = true});
+         },
+         1.5, 1.27},
+        {"stretched Beckmann's metal",
          [](float r, float q) {
              return make_metal(grey(0), grey(2),
                                {.base_color = {}, .roughness = r, .anisotropy = q, .is_beckmann = true});
          },
-         1.5, 1.27},
+         3, 1.35},
         {"plastic", [](float r, float) { return white_plastic(r); }, 7, 1.15},
         {"glass", [](float r, float q) { return make_dielectric(1.05f + 2 * q, r, grey(1)); }, 6, 1.55},
         {"sheen", [](float r, float q) { return make_sheen(Bsdf{}, grey(q), r); }, 3.6, 2.45},

@@ -78,13 +78,8 @@ bool any_lobe(const Bsdf& bsdf, const Is& is) {
     return is(bsdf.base);
 }
 
-/// The most light that a BSDF may return. Two lobes gain some: what stretched microfacets lose and reflect is fitted
-/// regardless of the angle to their tangent, which is too much near the horizon across it (up to 1.064 of the light)
-/// and for Beckmann's rough metal (up to 1.044); and rough filmed glass of an index below 1 gains up to 0.021.
-double largest_light(const Bsdf& bsdf) {
-    if (any_lobe(bsdf, is_stretched)) return 1.07;
-    return any_lobe(bsdf, is_filmed_bubble) ? 1.03 : 1 + 1e-3;
-}
+/// The most light that a BSDF may return. Rough filmed glass of an index below 1 gains up to 0.021.
+double largest_light(const Bsdf& bsdf) { return any_lobe(bsdf, is_filmed_bubble) ? 1.03 : 1 + 1e-3; }
 
 } // namespace
 

@@ -127,6 +127,26 @@ TEST_CASE("a thin wall of even microfacets transmits the mirror image of what GG
     }
 }
 
+TEST_CASE("stretched white metal returns all light at every angle and azimuth, GGX's and Beckmann's") {
+    for (const bool is_beckmann : {false, true})
+        for (const float roughness : {0.1f, 0.3f, 0.6f})
+            for (const float anisotropy : {0.3f, 0.6f, 0.95f}) {
+                const Bsdf metal = make_reflection({.base_color = grey(1),
+                                                    .metallic = 1,
+                                                    .roughness = roughness,
+                                                    .anisotropy = anisotropy,
+                                                    .is_beckmann = is_beckmann});
+                for (const float cosine : {0.003f, 0.03f, 0.1f, 0.35f, 0.65f, 0.95f})
+                    for (const float turn : {0.0f, 0.2f, 0.25f}) {
+                        const double light = mean_weight(metal, direction_at(cosine, turn), 1 << 12).g;
+                        INFO("Beckmann " << is_beckmann << ", roughness " << roughness << ", anisotropy " << anisotropy
+                                         << ", cosine " << cosine << ", turn " << turn << ", light " << light);
+                        CHECK(light > 0.988);
+                        CHECK(light < 1.0015);
+                    }
+            }
+}
+
 TEST_CASE("a coat's anisotropy, its rotation and its texture act in pictures as those of a reflection do") {
     std::vector<TextureImage> images(1);
     images[0].rgba8 = {2, 1, {255, 128, 255, 255, 60, 200, 128, 255}}; // along the tangent, and turned and weaker

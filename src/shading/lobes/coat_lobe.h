@@ -70,7 +70,8 @@ struct CoatLobe {
         }
         if (is_stretched()) {
             const FilmedLobe lobe = stretched();
-            const float albedo = f0 + (1.0f - f0) * max(lobe.widths.schlick(o.z), lobe.widths.schlick(i.z));
+            const float albedo = f0 + (1.0f - f0) * max(lobe.widths.schlick(lobe.widths.turned(o)),
+                                                        lobe.widths.schlick(lobe.widths.turned(i)));
             if (is_tinted()) transmittance.tint = transmittance.tint * tint_of(wo, wi, o.z, i.z, albedo);
             if (!reflects) i.z = -i.z;
             const BsdfValue value = lobe.evaluate(o, i, beneath, transmittance);

@@ -4,9 +4,9 @@
 // scattering, and a thin film (KHR_materials_iridescence) or, without one, a metal's F82 tint; else it is as
 // specular_lobe.h. A lobe of its own, so that the common ones stay small.
 //
-// Multiple scattering is compensated by Microfacets::energy_width(), which errs towards too little light. What lies
-// beneath gets 1 - max(C(o), C(i)) of the light, with the strongest channel's reflectance C for the narrower width:
-// neither a film's colours nor stretched microfacets have an average that the form of schlick_lobe.h needs.
+// What lies beneath gets 1 - max(C(o), C(i)) of the light, with the strongest channel's reflectance C by
+// Microfacets::schlick(): neither a film's colours nor stretched microfacets have an average that the form of
+// schlick_lobe.h needs.
 
 #include "shading/lobes/microfacets.h"
 #include "shading/lobes/schlick_lobe.h"
@@ -38,7 +38,8 @@ struct FilmedLobe {
     HD float energy() const { return max_component(average_reflectance()); }
     HD_CALL Gloss gloss(float cos_o) const {
         const Average average = make_average();
-        const Albedo at_o = albedo_at(cos_o);
+        const float aside = safe_sqrt(0.5f * (1.0f - cos_o * cos_o)); // midway between both tangents
+        const Albedo at_o = albedo_at({aside, aside, cos_o});
         return {(1.0f - at_o.lost) * reflectance(cos_o) + at_o.lost * average.more, widths.energy_width(),
                 1.0f - at_o.coat};
     }
@@ -51,7 +52,7 @@ struct FilmedLobe {
     HD_CALL BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
         const Vec3 o = widths.turned({wo.x, wo.y, abs(wo.z)}), i = widths.turned({wi.x, wi.y, abs(wi.z)});
         const Average average = make_average();
-        const Albedo at_o = albedo_at(o.z), at_i = albedo_at(i.z);
+        const Albedo at_o = albedo_at(o), at_i = albedo_at(i);
         const LayerShares shares = make_shares(average, at_o, beneath);
         BsdfValue value;
         if (!is_smooth() && wo.z * wi.z > 0) {
@@ -65,7 +66,7 @@ struct FilmedLobe {
     }
     HD_CALL LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
         const Average average = make_average();
-        const LayerShares shares = make_shares(average, albedo_at(abs(wo.z)), beneath);
+        const LayerShares shares = make_shares(average, albedo_at(widths.turned({wo.x, wo.y, abs(wo.z)})), beneath);
         Vec3 wi;
         if (u_lobe < shares.beneath) return draw_beneath(u_lobe, shares.beneath);
         if (u_lobe - shares.beneath < shares.more) {
@@ -122,15 +123,16 @@ private:
         if (metallic > 0) a.more = lerp(a.more, multiple_scattering_tint(average_of_metal(), a.lost), metallic);
         return a;
     }
-    HD Albedo albedo_at(float cosine) const {
+    HD Albedo albedo_at(Vec3 view) const {
+        const float cosine = view.z;
         Albedo a = {};
-        a.lost = widths.lost(cosine);
+        a.lost = widths.lost(view);
         if (has_film()) {
             if (metallic < 1) a.coat = max_component(of_dielectric(cosine));
             a.strength = metallic > 0 ? lerp(a.coat, max_component(of_metal(cosine)), metallic) : a.coat;
             return a;
         }
-        const float w = widths.schlick(cosine);
+        const float w = widths.schlick(view);
         const float most = max_component(f0);
         a.coat = most + (f90 - most) * w;
         const Rgb mixed = lerp(f0, base_color, metallic);

@@ -80,7 +80,7 @@ private:
         const float eta = eta_from(wo);
         const Vec3 o = widths.turned({wo.x, wo.y, abs(wo.z)});
         Vec3 i;
-        const float lost = lost_at(o.z, eta);
+        const float lost = lost_at(o, eta);
         if (u_glass < lost) {
             const float share = share_of_lost(eta);
             i = widths.sample_lost_lobe(u, true);
@@ -168,9 +168,7 @@ private:
         return rest > 0 ? rest / (rest + weight) : 0.0f;
     }
     /// A film changes the share that is reflected and thus loses less than the tables have: half of it is compensated.
-    HD float lost_at(float cosine, float eta) const {
-        return (1.0f - 0.5f * film.weight) * widths.energy_factor(cosine) * widths.glass_loss(cosine, eta);
-    }
+    HD float lost_at(Vec3 w, float eta) const { return (1.0f - 0.5f * film.weight) * widths.glass_loss(w, eta); }
     HD float share_of_lost(float eta) const {
         return DielectricLobe::transmitted_share(eta, widths.average_glass_loss(eta),
                                                  widths.average_glass_loss(1.0f / eta));
@@ -179,18 +177,19 @@ private:
     HD BsdfValue evaluate_reflection(Vec3 wo, Vec3 wi) const {
         const float eta = eta_from(wo);
         const Vec3 o = widths.turned({wo.x, wo.y, abs(wo.z)}), i = widths.turned({wi.x, wi.y, abs(wi.z)});
-        const float lost_o = lost_at(o.z, eta), average = widths.average_glass_loss(eta);
+        const float lost_o = lost_at(o, eta), average = widths.average_glass_loss(eta);
         const float stays = 1.0f - share_of_lost(eta);
         const GgxReflection once = widths.evaluate_reflection(o, i);
         const Interface at = interface(wo, once.cos_h);
-        const float more = i.z * kInvPi * (stays * lost_o * lost_at(i.z, eta) / average);
+        const float more = i.z * kInvPi * (stays * lost_o * lost_at(i, eta) / average);
         return {once.f * at.reflectance + grey(more),
                 (1.0f - lost_o) * at.chance * once.pdf + lost_o * stays * widths.pdf_lost_lobe(i.z, true)};
     }
     HD BsdfValue evaluate_refraction(Vec3 wo, Vec3 wi) const {
         const float eta = eta_from(wo), cos_o = abs(wo.z), cos_i = abs(wi.z);
-        const float lost_o = lost_at(cos_o, eta), share = share_of_lost(eta);
-        const float far_lost = lost_at(cos_i, 1.0f / eta), far_average = widths.average_glass_loss(1.0f / eta);
+        const float lost_o = lost_at(widths.turned(wo), eta), share = share_of_lost(eta);
+        const float far_lost = lost_at(widths.turned(wi), 1.0f / eta),
+                    far_average = widths.average_glass_loss(1.0f / eta);
         Rgb f = grey(share * lost_o * far_lost / far_average * (cos_i * kInvPi));
         float pdf = lost_o * share * widths.pdf_lost_lobe(cos_i, true);
         const bool outside = wo.z > 0; // a is the outside's direction, as in DielectricLobe

@@ -30,7 +30,7 @@ struct MetalLobe {
         Rgb f = once.f * fresnel_conductor(once.cos_h, eta, k);
         float pdf = once.pdf;
         if (!widths.is_single) {
-            const float lost_o = widths.lost(o.z), lost_i = widths.lost(i.z), lost = widths.average_lost();
+            const float lost_o = widths.lost(o), lost_i = widths.lost(i), lost = widths.average_lost();
             f += (i.z * kInvPi * lost_o * lost_i / lost) *
                  multiple_scattering_tint(fresnel_conductor_average(eta, k), lost);
             pdf = (1.0f - lost_o) * once.pdf + lost_o * widths.pdf_lost_lobe(i.z);
@@ -40,7 +40,7 @@ struct MetalLobe {
     HD_CALL LobeDraw draw(Vec3 wo, float u_lobe, Vec2 u) const {
         if (widths.is_smooth()) return draw_mirror(wo, weight * fresnel_conductor(abs(wo.z), eta, k), 1);
         Vec3 wi;
-        if (u_lobe < widths.lost(abs(wo.z))) {
+        if (u_lobe < widths.lost(widths.turned({wo.x, wo.y, abs(wo.z)}))) {
             wi = widths.sample_lost_lobe(u);
         } else {
             wi = widths.sample_reflection(wo, u);

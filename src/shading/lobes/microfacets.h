@@ -11,6 +11,7 @@
 #include "shading/lobes/energy_tables.h"
 #include "shading/lobes/ggx.h"
 #include "shading/lobes/grazing_lobe.h"
+#include "shading/lobes/stretched_tables.h"
 
 namespace pertev {
 
@@ -69,35 +70,38 @@ struct Microfacets {
     }
     HD float narrowest() const { return min(x, y); }
     HD float widest() const { return max(x, y); }
-    /// Width of the isotropic surface whose lost energy stands for that of this one; what it adds to Schlick's weight
-    /// for light at a cosine; and the factor on the lost energy, because an uneven surface loses less at grazing
-    /// angles. They were found by comparing single scattering over widths and angles, so that nothing is gained.
+    /// Width of the isotropic surface that loses about as much.
     HD float energy_width() const { return x == y ? x : sqrt(x * y) * (1.0f - 0.16f * unevenness()); }
-    HD float grazing_excess(float cosine) const { return unevenness() * max(0.045f - 0.9f * cosine, 0.0f); }
-    HD float energy_factor(float cosine) const { return 1.0f - unevenness() * max(0.7f - 2.3f * cosine, 0.0f); }
 
-    /// Fraction of the light that one bounce off a reflector with F = 1 loses and further bounces return, at a cosine,
-    /// and its average. Both are 0 for smooth and single scattering.
-    HD_CALL float lost(float cosine) const {
+    /// Fraction of the light that one bounce off a reflector with F = 1 loses and further bounces return, seen from
+    /// `w`, and its average. Both are 0 for smooth and single scattering.
+    HD_CALL float lost(Vec3 w) const {
         if (is_smooth() || is_single) return 0;
-        const float width = energy_width();
-        return energy_factor(cosine) * (is_beckmann ? beckmann_lost(cosine, width) : metal_lost(cosine, width));
+        if (x != y) return stretched_lost(w, x, y, is_beckmann);
+        return is_beckmann ? beckmann_lost(w.z, x) : metal_lost(w.z, x);
     }
     HD_CALL float average_lost() const {
         if (is_smooth() || is_single) return 0;
-        return is_beckmann ? beckmann_average_lost(energy_width()) : metal_average_lost(energy_width());
+        if (x != y) return stretched_average_lost(x, y, is_beckmann);
+        return is_beckmann ? beckmann_average_lost(x) : metal_average_lost(x);
     }
-    /// Average of Schlick's weight over the light that it reflects at a cosine, rather too much.
-    HD_CALL float schlick(float cosine) const {
-        if (is_smooth()) return schlick_weight(cosine);
-        if (is_beckmann) return beckmann_schlick(cosine, narrowest()) + grazing_excess(cosine);
-        return metal_schlick(cosine, narrowest()) + grazing_excess(cosine);
+    /// Average of Schlick's weight over the light that it reflects, seen from `w`: rather too much. Where the widths
+    /// differ, it is at most that of the narrower one and what schlick_excess() adds.
+    HD_CALL float schlick(Vec3 w) const {
+        if (is_smooth()) return schlick_weight(w.z);
+        const float narrow = is_beckmann ? beckmann_schlick(w.z, narrowest()) : metal_schlick(w.z, narrowest());
+        return x == y ? narrow : min(narrow + schlick_excess(w), 1.0f);
     }
-    /// lost() and average_lost() of glass, without energy_factor().
-    HD_CALL float glass_loss(float cosine, float eta) const {
+    /// lost() and average_lost() of glass. Stretched glass is taken to lose the share of what an even one loses that
+    /// metal has, and at most that; near the horizon less, by comparison over widths and angles.
+    HD_CALL float glass_loss(Vec3 w, float eta) const {
         if (is_smooth() || is_single) return 0;
-        const float width = energy_width();
-        return is_beckmann ? beckmann_glass_lost(cosine, width, eta) : glass_lost(cosine, width, eta);
+        const float width = energy_width(), cosine = min(abs(w.z), 1.0f);
+        const float even = is_beckmann ? beckmann_glass_lost(cosine, width, eta) : glass_lost(cosine, width, eta);
+        if (x == y) return even;
+        const float metal = is_beckmann ? beckmann_lost(cosine, width) : metal_lost(cosine, width);
+        const float horizon = 1.0f - unevenness() * max(0.95f - 3.1f * cosine, 0.0f);
+        return even * min(lost(w) / max(metal, 1e-9f), horizon);
     }
     HD_CALL float average_glass_loss(float eta) const {
         const float width = energy_width();
@@ -105,12 +109,12 @@ struct Microfacets {
     }
     /// Samples a direction for that light, u in [0, 1)^2, and the density at a cosine, 1/sr.
     HD_CALL Vec3 sample_lost_lobe(Vec2 u, bool is_glass = false) const {
-        const float width = energy_width(), own = share_of_own_lobe(is_glass);
+        const float width = lost_lobe_width(is_glass), own = share_of_own_lobe(is_glass);
         if (!(own < 1) || u.x < own) return beckmann::sample_lost_lobe(width, {u.x / own, u.y});
         return sample_grazing_lobe(width, {min((u.x - own) / (1.0f - own), 0x1.fffffep-1f), u.y});
     }
     HD_CALL float pdf_lost_lobe(float cosine, bool is_glass = false) const {
-        const float width = energy_width(), own = share_of_own_lobe(is_glass);
+        const float width = lost_lobe_width(is_glass), own = share_of_own_lobe(is_glass);
         float pdf = 0;
         if (own > 0) pdf += own * beckmann::pdf_lost_lobe(cosine, width);
         if (own < 1) pdf += (1.0f - own) * pdf_grazing_lobe(cosine, width);
@@ -121,8 +125,17 @@ private:
     /// Returns how often Beckmann's own lobe is drawn for that light, else GGX's. Glass loses light at more angles.
     HD float share_of_own_lobe(bool is_glass) const {
         if (!is_beckmann) return 0;
-        if (!is_glass) return 1;
+        if (!is_glass) return x == y ? 1.0f : 0.7f;
         return energy_width() > 0.5f ? 0.0f : 0.5f;
+    }
+    /// Beckmann's metal loses light up to the angles of the wider width, which has to be drawn there.
+    HD float lost_lobe_width(bool is_glass) const { return is_beckmann && !is_glass ? widest() : energy_width(); }
+    /// Found by comparison over widths and angles: most across the tangent, where facets that face the wide way
+    /// reflect.
+    HD float schlick_excess(Vec3 w) const {
+        const float a = square(x * w.x), b = square(y * w.y), most = x > y ? b : a;
+        const float across = a + b > 0 ? most / (a + b) : 1.0f;
+        return unevenness() * (schlick_weight(w.z) * (0.062f + 0.1f * across) + 0.012f * (1.0f - w.z));
     }
     HD float unevenness() const { return min(2.5f * (1.0f - narrowest() / widest()), 1.0f); }
 };

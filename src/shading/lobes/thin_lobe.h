@@ -35,7 +35,7 @@ struct ThinLobe {
         if (!is_smooth() && wo.z * wi.z < 0) {
             const Vec3 o = widths.turned({wo.x, wo.y, abs(wo.z)}), i = widths.turned({wi.x, wi.y, abs(wi.z)});
             const GgxReflection once = widths.evaluate_reflection(o, i);
-            const float lost_o = widths.lost(o.z), lost_i = widths.lost(i.z);
+            const float lost_o = widths.lost(o), lost_i = widths.lost(i);
             const float more = i.z * kInvPi * lost_o * lost_i / max(widths.average_lost(), 1e-9f);
             const float pdf = (1.0f - lost_o) * once.pdf + lost_o * widths.pdf_lost_lobe(i.z);
             value = {(transmittance.light_of_delta() * share * (once.f + more)) * tint,
@@ -54,7 +54,7 @@ struct ThinLobe {
                                .is_transmission = true}};
         }
         Vec3 wi;
-        if ((u_lobe - p_beneath) < (1.0f - p_beneath) * widths.lost(abs(wo.z))) {
+        if ((u_lobe - p_beneath) < (1.0f - p_beneath) * widths.lost(widths.turned({wo.x, wo.y, abs(wo.z)}))) {
             wi = widths.sample_lost_lobe(u);
         } else {
             wi = widths.sample_reflection(wo, u);
