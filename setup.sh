@@ -395,7 +395,7 @@ summary() {
     fi
 }
 
-! $tests || packages+=(doctest-dev libembree-dev "python3=python3" "python3-dev=python3-config" python3-venv)
+! $tests || packages+=(doctest-dev libembree-dev "git=git" "python3=python3" "python3-dev=python3-config" python3-venv)
 install_packages "${packages[@]}"
 check_tools
 choose_cuda

@@ -3,7 +3,7 @@
 # of Debian 12 and Debian 13, which have certificates and no more: tools/check_readme.sh [--report MEASUREMENT.json] PROGRAM [ROOTS].
 # PROGRAM is a build of the same sources, whose picture theirs must be. ROOTS (build/bare-roots) keeps the systems, each with what
 # the commands have installed, and the logs. A folder CCACHE_DIR is shared with them, under the same path as the clone's, which is
-# this checkout's. Needs root, debootstrap and the network; takes the time of two builds and two runs of the tests.
+# this checkout's. SUITES names other systems. Needs root, debootstrap and the network; takes the time of two builds and two runs of the tests.
 set -euo pipefail
 command="tools/check_readme.sh $*" report=
 [[ ${1:-} != --report ]] || { report=$(realpath -m "$2"); shift 2; }
@@ -18,7 +18,7 @@ mapfile -t commands < <(sed -n '/^## Start/,/^## Use/p' "$here/README.md" | awk 
 in_root() { # ROOT COMMAND: with /proc, /dev, this machine's names, certificates and compiler cache
     unshare -m bash -c 'root=$1; shift
         mount -t proc proc "$root/proc" && mount --rbind /dev "$root/dev" &&
-        for kept in /etc/resolv.conf /etc/ssl/certs ${CCACHE_DIR:-}; do
+        for kept in /etc/hosts /etc/resolv.conf /etc/ssl/certs ${CCACHE_DIR:-}; do
             [[ -d $kept ]] && mkdir -p "$root$kept" || : >>"$root$kept"
             mount --bind "$kept" "$root$kept"
         done &&
@@ -33,7 +33,7 @@ seconds_of() { # COMMAND...: runs it and prints how long it took
 printf 'system=system\tcommit=commit\tfirst_s=first command=s\ttests_s=second command=s\ttests=tests\n' >"$work/rows"
 hash_of() { grep -oE '\b[0-9a-f]{32}\b' "$1" | tail -1; }
 "$program" render cornell-box -o "$work/cornell-box.png" >"$work/first.log" 2>&1
-for suite in bookworm trixie; do
+for suite in ${SUITES:-bookworm trixie}; do
     root=$roots/$suite clone=$roots/$suite$here
     [[ -e $root.made ]] || { mkdir -p "$roots"; debootstrap --variant=minbase --include=ca-certificates "$suite" "$root" >"$root.log" && touch "$root.made"; }
     rm -rf "$clone" && git clone -q "$here" "$clone"
