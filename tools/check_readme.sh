@@ -11,7 +11,7 @@ here=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
 program=$(realpath "$1") roots=$(realpath -m "${2:-$here/build/bare-roots}")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-# The indented blocks of the section, each a command.
+# The section's blocks that begin with ./setup.sh.
 mapfile -t commands < <(sed -n '/^## Start/,/^## Use/p' "$here/README.md" | awk '/^```/ { inside = !inside; next } inside && /^\.\/setup\.sh/')
 [[ ${#commands[@]} == 2 && ${commands[0]} == *render* && ${commands[1]} == *--tests* ]] || { echo "README.md has other commands"; exit 1; }
 
@@ -20,7 +20,7 @@ in_root() { # ROOT COMMAND: with /proc, /dev, this machine's names, certificates
         mount -t proc proc "$root/proc" && mount --rbind /dev "$root/dev" &&
         for kept in /etc/hosts /etc/resolv.conf /etc/ssl/certs ${CCACHE_DIR:-}; do
             [[ -d $kept ]] && mkdir -p "$root$kept" || : >>"$root$kept"
-            mount --bind "$kept" "$root$kept"
+            mount --bind "$kept" "$root$kept" || exit
         done &&
         exec chroot "$root" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin PIP_DISABLE_PIP_VERSION_CHECK=1 \
             ${PIP_CERT:+PIP_CERT=$PIP_CERT} ${CCACHE_DIR:+CCACHE_DIR=$CCACHE_DIR} bash -euc "$1"' _ "$@"
@@ -33,12 +33,14 @@ seconds_of() { # COMMAND...: runs it and prints how long it took
 printf 'system=system\tcommit=commit\tfirst_s=first command=s\ttests_s=second command=s\ttests=tests\n' >"$work/rows"
 hash_of() { grep -oE '\b[0-9a-f]{32}\b' "$1" | tail -1; }
 "$program" render cornell-box -o "$work/cornell-box.png" >"$work/first.log" 2>&1
+hash=$(hash_of "$work/first.log")
+[[ -n $hash ]] || { echo "$program prints no hash"; exit 1; }
 for suite in ${SUITES:-bookworm trixie}; do
     root=$roots/$suite clone=$roots/$suite$here
     [[ -e $root.made ]] || { mkdir -p "$roots"; debootstrap --variant=minbase --include=ca-certificates "$suite" "$root" >"$root.log" && touch "$root.made"; }
     rm -rf "$clone" && git clone -q "$here" "$clone"
     first=$(seconds_of in_root "$root" "cd '$here'; ${commands[0]}" 2>&1 | tee "$root.first.log" | tail -1)
-    [[ -s $clone/cornell-box.png && $(hash_of "$root.first.log") == "$(hash_of "$work/first.log")" ]]
+    [[ -s $clone/cornell-box.png && $(hash_of "$root.first.log") == "$hash" ]] || { echo "the picture on $suite is not $hash"; exit 1; }
     tests=$(seconds_of in_root "$root" "cd '$here'; ${commands[1]}" 2>&1 | tee "$root.tests.log" | tail -1)
     passed=$(sed -n 's/.*tests passed, 0 tests failed out of \([0-9]*\).*/\1/p' "$root.tests.log")
     [[ -n $passed ]] || { tail -40 "$root.tests.log"; exit 1; }

@@ -1,12 +1,12 @@
 // Writes the tables of lobes into the folder that it is given: energy_table_data.h, which says how much energy GGX
-// microfacets lose to single scattering, beckmann_table_data.h, the same of Beckmann's, and sheen_table_data.h, the
-// directional albedo of the sheen lobe. The numbers
-// stand in *.inl, which only lobe_table_data.cpp and device code read.
+// microfacets lose to single scattering, beckmann_table_data.h, the same of Beckmann's, stretched_table_data.h, of both
+// if they are stretched (stretched_integrals.h), and sheen_table_data.h, the directional albedo of the sheen lobe. The
+// numbers stand in *.inl, which only lobe_table_data.cpp and device code read.
 //
-// The build runs it. Axes and meaning are stated in src/shading/lobes/energy_tables.h and sheen_lobe.h, which must
-// agree with this file. Doubles leave eight digits to spare, so the values do not depend on the compiler or on libm;
-// other text than that of kHash is refused. tests/unit/lobe_tables_test.cpp holds the floats that a program reads of
-// it.
+// The build runs it. Axes and meaning are stated in src/shading/lobes/energy_tables.h, stretched_tables.h and
+// sheen_lobe.h, which must agree with this file. Doubles leave eight digits to spare, so the values do not depend on
+// the compiler or on libm; other text than that of kHash is refused. tests/unit/lobe_tables_test.cpp holds the floats
+// that a program reads of it.
 //
 // Each value is an integral by a product rule: Gauss-Legendre along one axis, and midpoints about the other, along
 // which the integrand is even and periodic. Energy is integrated over the distribution of visible normals (Heitz 2018;

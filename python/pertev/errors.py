@@ -64,7 +64,8 @@ _NUMBERS = {os.strerror(number): number for number in errno.errorcode}
 
 def _text(marked, setting, value):
     # Names with capitals or slashes, as meshes/floor/faces, are no settings of the table.
-    return _core.phrase(marked.replace(f"`{setting}`", setting).replace(f"`{setting}={value}`", f"{setting}='{value}'"))
+    text = _core.phrase(marked)
+    return text.replace(f"`{setting}`", setting).replace(f"`{setting}={value}`", f"{setting}='{value}'")
 
 
 def made(status, marked, setting, value, reason, file, line, pointer):

@@ -110,8 +110,8 @@ bool has_default(const MaterialParameters& material, std::string_view key) {
 bool is_judged(std::string_view key) { return std::ranges::find(kEffects, key, &Effect::key) != std::end(kEffects); }
 
 bool is_heeded(const MaterialParameters& material, std::string_view key) {
-    if (!is_judged(key) || material.is_clear_boundary) return true;
     const auto* const effect = std::ranges::find(kEffects, key, &Effect::key);
+    if (effect == std::end(kEffects) || material.is_clear_boundary) return true;
     // Only metals whose BSDF is made from layers have a weight (device_scene/make_bsdf.h).
     const bool lacks_weight =
         key == "specular_weight" && material.kind == MaterialKind::Conductor && !material.is_stacked();

@@ -221,6 +221,11 @@ class Errors(unittest.TestCase):
         error = self.refused(pertev.InputError, "layers_at", lambda: pertev.render(self.scene, **SMALL, aov="uv", layers_at="centre"))
         self.assertIn("aov='uv'", str(error))
 
+    def test_values_in_messages_are_python_s(self):
+        for text, values in [("spp=0 ", {"spp": 0}), ("eye=(1,2)", {"eye": (1, 2)}), ("fov=400", {"fov": 400}), ("device='gpu'", {"device": "gpu"})]:
+            error = self.refused(pertev.InputError, next(iter(values)), lambda: pertev.render(self.scene, **{**SMALL, **values}))
+            self.assertTrue(str(error).startswith(text), error)
+
     def test_arrays_of_wrong_shape_type_or_device_are_refused(self):
         mesh = {"vertices": numpy.eye(3), "faces": numpy.array([[0, 1, 2]])}
         picture, folder = numpy.zeros((4, 4, 3), numpy.float32), self.enterContext(tempfile.TemporaryDirectory())

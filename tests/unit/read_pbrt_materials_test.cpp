@@ -113,6 +113,10 @@ TEST_CASE("pbrt: the parts of disney are as bright as pbrt's") {
     CHECK(plain.base_color.r == doctest::Approx(0.5f * 1.1f).epsilon(0.05)); // ours is dimmed by the reflection above
     CHECK(plain.specular_weight == 1);
     CHECK(pbrt_material("Material \"disney\" \"float eta\" 1").specular_weight == 0);
+    const Material clear =
+        pbrt_material("Material \"disney\" \"rgb color\" [.25 .25 .25] \"float spectrans\" 1 \"float sheen\" 1");
+    CHECK(clear.base_color.r == doctest::Approx(0.5)); // both interfaces together have the colour
+    CHECK(clear.fuzz_weight == 0);
     const Material layered =
         pbrt_material("Material \"disney\" \"float clearcoat\" 1 \"float clearcoatgloss\" 0 \"float sheen\" 1");
     CHECK(layered.coat_weight == 0.25f);

@@ -35,7 +35,7 @@ void set_disney_reflection(Material& material, float weight) {
     if (grazing >= kLeast) material.specular_color = grey(1 / grazing);
 }
 
-void set_disney_color(Surface& surface, const TextureValue& color) {
+void set_disney_color(Surface& surface, const TextureValue& color, float roughness) {
     using M = MaterialParameters;
     Material& material = surface.material;
     const float opaque =
@@ -43,7 +43,7 @@ void set_disney_color(Surface& surface, const TextureValue& color) {
     float wanted = 1, ours = 1;
     if (opaque > 0) {
         // Disney's rough surfaces are brighter than Lambert's.
-        const float rough = material.roughness_texture.has_image() ? 0.5f : clamp(material.roughness, 0.0f, 1.0f);
+        const float rough = material.roughness_texture.has_image() ? 0.5f : clamp(roughness, 0.0f, 1.0f);
         wanted = 1 + opaque * (0.1123f * rough - 0.0471f);
         ours = 1 - opaque * (1 - passed_by_reflection(material));
     }

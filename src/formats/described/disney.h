@@ -15,8 +15,9 @@ namespace pertev::described {
 void set_disney_reflection(Material& material, float weight);
 
 /// Sets the base colour. Disney's reflection lies beside the diffuse light and does not dim it as ours, so the colour
-/// is brightened, up to white. Reflection, metal and transmission are set already.
-void set_disney_color(Surface& surface, const TextureValue& color);
+/// is brightened, up to white. Reflection, metal and transmission are set already. `roughness` is the file's, if it has
+/// no texture.
+void set_disney_color(Surface& surface, const TextureValue& color, float roughness);
 
 /// Sets the coat of `clearcoat` and `gloss` in [0, 1].
 void set_disney_coat(Material& material, float clearcoat, float gloss);

@@ -19,7 +19,7 @@ namespace {
 
 using Mappings = std::vector<std::shared_ptr<const TextureMapping>>;
 constexpr std::size_t kMaxMappings = kTextureSets - 1;
-/// The most triangles that dividing them makes of a mesh.
+/// The most triangles that dividing them makes of a mesh with less than half as many.
 constexpr uint64_t kMostTriangles = 1 << 20;
 
 /// Appends a copy of a vertex, without its set `except`. Returns its number.
@@ -130,8 +130,10 @@ std::optional<ShapeMesh> with_sets(const Parts& parts, const Placed& shape, cons
     give_missing_coordinates(parts, shape, made);
     // A power is that of each of the file's triangles.
     const bool has_power = shape.area_light && parts.area_lights[*shape.area_light].power > 0 && !from.is_quadric;
-    const uint64_t most = has_power ? 0 : (left - bytes_of(from.mesh)) / (kVertexBytes * (of_triangle + 2));
-    if (!divide_triangles(made.mesh, sets, world_from_mesh, std::min<uint64_t>(most, kMostTriangles)))
+    const uint64_t most =
+        has_power ? 0 : (left - std::min(left, bytes_of(made.mesh))) / (kVertexBytes * (of_triangle + 2));
+    if (!divide_triangles(made.mesh, sets, world_from_mesh,
+                          std::min(most, std::max<uint64_t>(kMostTriangles, 2 * made.mesh.triangle_count()))))
         sink.warn({from.location, "the mapping of a texture is linear across large triangles"});
     left -= std::min(bytes_of(made.mesh), left);
     for (std::size_t k = 0; k < sets.size(); ++k) add_set(made.mesh, *sets[k], world_from_mesh, k + 1);

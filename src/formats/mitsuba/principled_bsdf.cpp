@@ -26,6 +26,7 @@ Surface Bsdfs::principled(Object& bsdf) {
         return missing;
     };
     set_number(surface, &M::roughness, &M::roughness_texture, textures_.number(bsdf, "roughness", 0.5f));
+    const float roughness = material.roughness; // before it is that of the narrower width
     if (!is_thin) set_number(surface, &M::metallic, &M::metallic_texture, textures_.number(bsdf, "metallic", 0));
     material.transmission_weight = number("spec_trans", 0);
     material.thin_walled = is_thin;
@@ -61,7 +62,7 @@ Surface Bsdfs::principled(Object& bsdf) {
     } else {
         // A thin wall reflects only as far as it is clear.
         set_disney_reflection(material, is_thin ? material.transmission_weight : 1.0f);
-        set_disney_color(surface, base);
+        set_disney_color(surface, base, roughness);
     }
     for (const char* const name : {"spec_tint", "sheen_tint", "flatness"}) {
         const TextureValue value = textures_.number(bsdf, name, 0);
@@ -69,9 +70,8 @@ Surface Bsdfs::principled(Object& bsdf) {
             parameters.leave_out({name}, "the nearest material has none", sink);
     }
     parameters.ignore({"main_specular_sampling_rate", "clearcoat_sampling_rate", "diffuse_reflectance_sampling_rate",
-                       "diffuse_reflectance_sampling_rate", "spec_reflectance_sampling_rate",
-                       "spec_trans_sampling_rate", "specular_sampling_rate", "diffuse_sampling_rate",
-                       "diff_trans_sampling_rate"});
+                       "spec_reflectance_sampling_rate", "spec_trans_sampling_rate", "specular_sampling_rate",
+                       "diffuse_sampling_rate", "diff_trans_sampling_rate"});
     warn_of_nearest(bsdf, "glTF's material of these parameters");
     return surface;
 }

@@ -169,9 +169,15 @@ Surface disney(const MaterialSource& source) {
     material.thin_walled = parameters.truth("thin", false, source.context.sink);
     material.has_relative_ior = material.transmits() && !material.thin_walled;
     set_index(source, material.has_relative_ior ? kLeastIor : 1, surface);
-    set_disney_sheen(material, number("sheen", 0));
-    set_disney_reflection(material, 1);
-    set_disney_color(surface, source.textures.color(parameters, "color", grey(0.5f)));
+    set_disney_sheen(material, (1 - material.transmission_weight) * number("sheen", 0));
+    const TextureValue color = source.textures.color(parameters, "color", grey(0.5f));
+    const bool is_metal = material.metallic > 0 || material.metallic_texture.has_image();
+    if (material.transmission_weight == 1 && !is_metal) { // two interfaces have the colour together
+        set_color(surface, &M::base_color, &M::base_color_texture, color, Curve::Root);
+    } else {
+        set_disney_reflection(material, 1);
+        set_disney_color(surface, color, material.roughness);
+    }
     for (const char* const name :
          {"speculartint", "anisotropic", "sheentint", "scatterdistance", "flatness", "difftrans"})
         parameters.leave_out({name}, "the nearest material has none", source.context.sink);

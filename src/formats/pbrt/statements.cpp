@@ -16,7 +16,7 @@ namespace pertev::pbrt {
 namespace {
 
 constexpr std::size_t kMostFiles = 64;      // most includes in each other
-constexpr std::size_t kMostRepeated = 4096; // inclusions of files that were included before
+constexpr std::size_t kMostRepeated = 4096; // inclusions by included files of files that were included before
 constexpr std::size_t kMostKept = 1 << 16;  // states of begin statements in each other
 
 std::string_view text_of(const std::vector<std::byte>& bytes) {
@@ -178,7 +178,8 @@ void Statements::read_file(Tokens& tokens, const FileLocation& location, bool ke
         throw Error(ErrorCode::BadInput, location, fmt::format("{} files include each other", files_));
     const auto path = context_.access.find(base_of(context_, location, name), name, context_.sink);
     if (!path) throw Error(ErrorCode::BadInput, location, fmt::format("there is no file {}", shortened(name)));
-    if (!included_.insert(*path).second && ++repeated_ > kMostRepeated)
+    // The scene's own file may include a leaf as often as it says so.
+    if (!included_.insert(*path).second && files_ > 1 && ++repeated_ > kMostRepeated)
         throw Error(ErrorCode::OverLimit, location,
                     fmt::format("the same files are included more than {} times", kMostRepeated));
     const std::vector<std::byte> bytes = read_unzipped(*path);

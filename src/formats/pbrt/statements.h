@@ -98,7 +98,7 @@ private:
     std::size_t files_ = 0; // open ones
     uint64_t bytes_ = 0, first_bytes_ = 0;
     std::set<std::filesystem::path> included_;
-    std::size_t repeated_ = 0; // inclusions of files that were included before
+    std::size_t repeated_ = 0; // inclusions by included files of those that were included before
 };
 
 } // namespace pertev::pbrt

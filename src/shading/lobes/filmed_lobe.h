@@ -5,8 +5,8 @@
 // specular_lobe.h. A lobe of its own, so that the common ones stay small.
 //
 // What lies beneath gets 1 - max(C(o), C(i)) of the light, with the strongest channel's reflectance C by
-// Microfacets::schlick(): neither a film's colours nor stretched microfacets have an average that the form of
-// schlick_lobe.h needs.
+// Microfacets::schlick(), or with a film its own at that angle: neither a film's colours nor stretched microfacets have
+// an average that the form of schlick_lobe.h needs.
 
 #include "shading/lobes/microfacets.h"
 #include "shading/lobes/schlick_lobe.h"
