@@ -12,18 +12,6 @@ namespace nb = nanobind;
 
 namespace pertev {
 
-namespace {
-
-/// Returns whether this is the interpreter's main thread, which need not be the process's first one.
-bool is_main_thread() {
-    const nb::module_ threading = nb::module_::import_("threading");
-    return threading.attr("get_ident")().equal(threading.attr("main_thread")().attr("ident"));
-}
-
-} // namespace
-
-PythonSink::PythonSink() : is_main_(is_main_thread()) {}
-
 bool PythonSink::should_stop() {
     if (has_raised_) return true;
     if (!is_main_ || std::this_thread::get_id() != caller_) return false;

@@ -3,6 +3,8 @@
 // The sink of a call from Python. The call's work runs without the interpreter's lock and ends by Ctrl-C, and its
 // messages go to Python's `logging` once the call has the lock again.
 
+#include <unistd.h>
+
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -13,8 +15,6 @@ namespace pertev {
 
 class PythonSink final : public Messages {
 public:
-    /// Needs the interpreter's lock.
-    PythonSink();
     /// Returns whether a signal's handler has raised an exception, which is then the calling thread's. Only that
     /// thread asks the interpreter, at most every 20 ms, and only if it is the main one, which alone gets signals.
     bool should_stop() override;
@@ -25,7 +25,7 @@ private:
     using Clock = std::chrono::steady_clock;
 
     const std::thread::id caller_ = std::this_thread::get_id();
-    const bool is_main_;
+    const bool is_main_ = ::gettid() == ::getpid();
     Clock::time_point asked_ = Clock::now();
     std::atomic<bool> has_raised_ = false;
 };
