@@ -175,7 +175,7 @@ class Running(unittest.TestCase):
             threading.Timer(0.2, lambda: signal.raise_signal(signal.SIGINT)).start()
             with self.assertRaises(KeyboardInterrupt):
                 pertev.load(file)
-            self.assertLess(time.process_time() - begun, 1.5)
+            self.assertLess(time.process_time() - begun, 2.5)  # reading all takes over ten
 
     def test_a_keyboard_interrupt_changes_no_files(self):
         with tempfile.TemporaryDirectory() as folder:
