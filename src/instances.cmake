@@ -98,10 +98,11 @@ pertev_launches(render/raster/tile_lists.cu
 
 # Stages of denoise.
 pertev_launches(denoise/frame_stages.cu
-  denoise/compare_light.h denoise/contacts.h denoise/keep_layers.h denoise/motion_vectors.h denoise/sum_blocks.h
+  denoise/aim_at_moved.h denoise/compare_light.h denoise/contacts.h denoise/keep_layers.h denoise/motion_vectors.h denoise/sum_blocks.h
   denoise/upsample_picture.h render/row_band.h
   STAGES CentreRays
     MotionOfHits
+    AimAtMoved
     CompareLight
     SpreadLight
     FindChangedShare

@@ -1,7 +1,9 @@
 #pragma once
 
 // Last stage: temporal mean of pictures, each sampled at other positions within the pixels. History is clamped to the
-// colours around the pixel.
+// colours around the pixel. An emitter smaller than a pixel is hit in some frames only, so while nothing but the camera
+// moves its light stays within the limits for as long as its share of the pixel needs; otherwise it would be cut off
+// in all frames but these.
 //
 // Sources: Karis, "High Quality Temporal Supersampling", SIGGRAPH 2014 (colours in YCoCg); Salvi, "An Excursion in
 // Temporal Supersampling", GDC 2016 (limits by mean and deviation).
@@ -17,7 +19,7 @@ struct SteadyLight {
     const Float4* means;    // diffuse of the frame's HistoryView
     const Float4* guide;    // guide of that
     uint32_t width, height; // pixels; they may be fewer than the picture's
-    float frames;           // number of frames from which on light is steady
+    uint32_t frames;        // number of frames from which on light is steady
     bool may_change = true; // false: the scene is that of the previous frame, so the light is, too
 
     /// Returns whether the light around a pixel of the picture is steady. A single surface suffices, because an emitter
@@ -30,7 +32,8 @@ struct SteadyLight {
         const uint32_t own = object_of(guide[y * w + x]);
         for (int k = 0; k < 9; ++k) {
             const int tap = held(y, k / 3 - 1, h) * w + held(x, k % 3 - 1, w);
-            if (means[tap].w >= frames && !differ_in_contact(own, object_of(guide[tap]))) return true;
+            if (means[tap].w >= static_cast<float>(frames) && !differ_in_contact(own, object_of(guide[tap])))
+                return true;
         }
         return false;
     }
@@ -42,11 +45,24 @@ struct SteadyLight {
     }
 };
 
+/// A shown pixel keeps this in the bits of its w.
+struct ShownMemory {
+    uint32_t frames_at_rest; // frames in which the pixel and those beside it have been at rest under steady light
+    float emitted;           // luma of the brightest emitter seen there lately, less by a share in each frame
+
+    HD static ShownMemory unpack(float w) { return {bits_of(w) & kFrames, float_of(bits_of(w) & ~kFrames)}; }
+    HD float pack() const { return float_of((bits_of(emitted) & ~kFrames) | min(frames_at_rest, kFrames)); }
+
+private:
+    static constexpr uint32_t kFrames = 0xffff; // the other bits are the upper half of a float
+};
+
 struct AntiAlias {
-    const Float4* picture; // output of ComposePicture
-    const Vec2* was_at;    // output of AccumulateSignals
-    const Float4* before;  // `shown` of the previous frame's HistoryView
-    Float4* shown; // w: number of frames in which the pixel and those beside it have been at rest under steady light
+    const Float4* picture;  // output of ComposePicture
+    const Float4* emission; // NoisyFrameView::emission of the picture
+    const Vec2* was_at;     // output of AccumulateSignals
+    const Float4* before;   // `shown` of the previous frame's HistoryView
+    Float4* shown;          // w: ShownMemory
     uint32_t width, height;
     bool has_history;
     SteadyLight steady;
@@ -58,14 +74,18 @@ struct AntiAlias {
     static constexpr float kNew = 0.1f, kNewPerPixel = 0.1f, kNewAtMost = 0.4f;
     static constexpr float kAtRest = 0.01f; // pixels
     static constexpr float kDeviations = 1, kDeviationsPerPixel = -0.25f, kDeviationsAtLeast = 0.5f;
+    // After each frame this share of an emitter's light is left as a limit. One that fills a tenth of a pixel, whose
+    // mean has a tenth of its light, is thus kept for 22 frames, in which it is hit twice on average.
+    static constexpr float kEmittedKept = 0.9f;
 
     HD void operator()(uint32_t i) const {
         const PixelPosition at = tiled_in_band(i, width, band);
         const uint32_t pixel = at.y * width + at.x;
         const Rgb own = rgb_of(picture[pixel]);
-        float frames_at_rest = 0;
-        const Rgb color = has_history ? with_history(at, own, frames_at_rest) : own;
-        shown[pixel] = with_w(color, frames_at_rest);
+        const float emitted = shown_color(rgb_of(emission[pixel])).r;
+        ShownMemory memory = {0, emitted <= own.r ? emitted : max(own.r, 0.0f)}; // an invalid sample has no emission
+        const Rgb color = has_history ? with_history(at, own, memory) : own;
+        shown[pixel] = with_w(color, memory.pack());
     }
 
 private:
@@ -74,7 +94,7 @@ private:
         PixelPosition nearest; // pixel of least depth, because edges move with the foreground
     };
 
-    HD Rgb with_history(PixelPosition at, Rgb own, float& frames_at_rest) const {
+    HD Rgb with_history(PixelPosition at, Rgb own, ShownMemory& memory) const {
         const Colors around = neighbourhood(at);
         const PixelPosition nearest = around.nearest;
         const Vec2 moved = was_at[nearest.y * width + nearest.x];
@@ -82,25 +102,32 @@ private:
                            moved.y + static_cast<float>(static_cast<int>(at.y) - static_cast<int>(nearest.y))};
         if (!(then.x >= 0 && then.y >= 0 && then.x < static_cast<float>(width) && then.y < static_cast<float>(height)))
             return own;
-        const Rgb old = sample(then);
+        float emitted = 0;
+        const Rgb old = sample(then, emitted);
+        // A moving emitter would leave a trail.
+        if (!steady.may_change) memory.emitted = max(memory.emitted, kEmittedKept * emitted);
         const float x_moved = then.x - (static_cast<float>(at.x) + 0.5f),
                     y_moved = then.y - (static_cast<float>(at.y) + 0.5f);
         const float pixels_moved = sqrt(square(x_moved) + square(y_moved));
         // At rest a history is right, even if this frame's samples have missed what is smaller than a pixel.
         if (pixels_moved < kAtRest) {
             if (steady.is_around(at, width, height)) {
-                frames_at_rest = min(before[at.y * width + at.x].w + 1.0f, steady.frames);
+                const uint32_t frames = ShownMemory::unpack(before[at.y * width + at.x].w).frames_at_rest;
+                memory.frames_at_rest = min(frames + 1, steady.frames);
             }
-            if (frames_at_rest >= steady.frames) return lerp(old, own, kNew);
+            if (memory.frames_at_rest >= steady.frames) return lerp(old, own, kNew);
         }
         const float deviations = max(fma(kDeviationsPerPixel, pixels_moved, kDeviations), kDeviationsAtLeast);
         // Where contacts are known, a gap as thin as a pixel must not fade: its colour is within the limits, and no
         // mean has more frames than that of its light.
         const float frames_of_light = steady.frames_of_contact(at, width, height);
-        const Rgb kept = frames_of_light > 0 ? own : around.mean;
-        const Rgb limited = {within(old.r, kept.r, around.mean.r, deviations * around.deviation.r),
-                             within(old.g, kept.g, around.mean.g, deviations * around.deviation.g),
-                             within(old.b, kept.b, around.mean.b, deviations * around.deviation.b)};
+        const Rgb kept = frames_of_light > 0 ? own : around.mean, tolerance = deviations * around.deviation;
+        const float brightest = steady.may_change ? kept.r : max(kept.r, memory.emitted),
+                    luma = within(old.r, brightest, around.mean.r, tolerance.r);
+        // What an emitter's luma has beyond the colours around may have any hue.
+        const float beyond = steady.may_change ? 0.0f : 2.0f * max(luma - around.mean.r - tolerance.r, 0.0f);
+        const Rgb limited = {luma, within(old.g, kept.g, around.mean.g, tolerance.g + beyond),
+                             within(old.b, kept.b, around.mean.b, tolerance.b + beyond)};
         const float weight = min(fma(kNewPerPixel, pixels_moved, kNew), kNewAtMost);
         return lerp(limited, own, max(weight, frames_of_light > 0 ? 1.0f / (frames_of_light + 1.0f) : 0.0f));
     }
@@ -128,8 +155,8 @@ private:
     }
 
     /// Samples the previously shown picture with Catmull-Rom splines (Jimenez, "Filmic SMAA", SIGGRAPH 2016), which
-    /// blur less than linear interpolation.
-    HD Rgb sample(Vec2 position) const {
+    /// blur less than linear interpolation. `emitted` becomes the most that the four pixels around have (ShownMemory).
+    HD Rgb sample(Vec2 position, float& emitted) const {
         const float x = position.x - 0.5f, y = position.y - 0.5f, left = floor(x), top = floor(y);
         const Weights wx = spline(x - left), wy = spline(y - top);
         const int w = static_cast<int>(width), h = static_cast<int>(height);
@@ -140,7 +167,12 @@ private:
         for (int j = 0; j < 4; ++j) {
             const Float4* const line = before + held(row, j - 1, h) * w;
             Rgb of_line = {0, 0, 0};
-            for (int k = 0; k < 4; ++k) of_line = add_scaled(of_line, wx.of[k], rgb_of(line[columns[k]]));
+            for (int k = 0; k < 4; ++k) {
+                const Float4 there = line[columns[k]];
+                of_line = add_scaled(of_line, wx.of[k], rgb_of(there));
+                const bool is_around = (j == 1 || j == 2) && (k == 1 || k == 2);
+                if (is_around) emitted = max(emitted, ShownMemory::unpack(there.w).emitted);
+            }
             sum = add_scaled(sum, wy.of[j], of_line);
         }
         return sum;

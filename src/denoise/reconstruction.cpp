@@ -120,7 +120,7 @@ SteadyLight Reconstruction::steady_light(const HistoryView& now, bool may_change
                                          const ReconstructionSettings& settings) const {
     constexpr uint32_t kLeast = 8; // frames in which emitters smaller than a pixel have been seen
     const uint32_t frames = may_change ? std::max(settings.history * 3 / 4, kLeast) : kLeast;
-    return {now.diffuse, now.guide, width_, height_, static_cast<float>(frames), may_change};
+    return {now.diffuse, now.guide, width_, height_, frames, may_change};
 }
 
 void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
@@ -138,8 +138,9 @@ void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, cons
     launch_in_band(*queue_, "compose_picture", of_picture, width_, ComposePicture{frame.view(), light, picture});
     if (settings.anti_alias) {
         launch(*queue_, "anti_alias", own.count() * width_,
-               AntiAlias{picture, positions_before(), history(frames_).shown, now.shown, width_, height_, frames_ > 0,
-                         steady_light(now, may_change(scene, scene_before, change), settings), own});
+               AntiAlias{picture, frame.view().emission, positions_before(), history(frames_).shown, now.shown, width_,
+                         height_, frames_ > 0, steady_light(now, may_change(scene, scene_before, change), settings),
+                         own});
     }
     timer_.stop();
     last_camera_ = camera;

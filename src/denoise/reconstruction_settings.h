@@ -32,12 +32,13 @@ struct ReconstructionSettings {
     bool operator==(const ReconstructionSettings&) const = default;
 };
 
-/// Returns `settings` without any filtering, clamping or history, so that the picture shows the raw samples.
+/// Returns `settings` without any filtering, clamping or history, so that the picture shows the raw samples. Reservoirs
+/// of ReSTIR still follow the light by temporal gradients.
 inline ReconstructionSettings of_samples_alone(ReconstructionSettings settings) {
     settings.denoiser = FrameDenoiser::Svgf;
     settings.history = 1;
     settings.passes = 0;
-    settings.clamp_fireflies = settings.clamp_history = settings.temporal_gradients = settings.anti_alias = false;
+    settings.clamp_fireflies = settings.clamp_history = settings.anti_alias = false;
     return settings;
 }
 

@@ -1,5 +1,8 @@
 #include "denoise/temporal_gradients.h"
 
+#include <cstring>
+
+#include "denoise/aim_at_moved.h"
 #include "denoise/compare_light.h"
 #include "device/launch.h"
 
@@ -16,7 +19,28 @@ TemporalGradients::TemporalGradients(Queue& queue, uint32_t frame_width, uint32_
       before_(queue, memory.side(frame_width), memory.side(frame_height), splits_light, memory.before),
       after_(queue, before_.width(), before_.height(), splits_light, memory.after), numbers_(memory.numbers) {}
 
+void TemporalGradients::follow(const SceneView& scene, const PreviousScene& scene_before) {
+    launch(*queue_, "aim_at_moved", before_.width() * before_.height(),
+           AimAtMoved{before_.view().hit, scene.instances, scene.meshes, scene_before, numbers_});
+    after_.aim(numbers_);
+}
+
+bool TemporalGradients::are_of_scene(std::span<const std::vector<std::byte>> rows,
+                                     std::span<const uint32_t> triangle_counts) {
+    constexpr std::size_t kHits = 2; // in NoisyFrame::rows()
+    const std::vector<std::byte>& hits = rows[kHits];
+    for (std::size_t at = 0; at + sizeof(Float4) <= hits.size(); at += sizeof(Float4)) {
+        Float4 hit;
+        std::memcpy(&hit, hits.data() + at, sizeof hit);
+        const uint32_t instance = bits_of(hit.x);
+        if (instance == kNoHit) continue;
+        if (instance >= triangle_counts.size() || bits_of(hit.y) >= triangle_counts[instance]) return false;
+    }
+    return true;
+}
+
 TemporalGradientsView TemporalGradients::compare() {
+    after_.aim(nullptr); // the numbers take their place
     const uint32_t width = before_.width(), height = before_.height(), pixels = width * height;
     Float4* const guide = numbers_;
     Float4 *was = guide + pixels, *is = was + pixels, *free_was = is + pixels, *free_is = free_was + pixels;

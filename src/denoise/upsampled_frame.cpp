@@ -40,7 +40,8 @@ void UpsampledFrame::add(const NoisyFrame& features, const CameraView& camera, c
                                    was_at_.data(), picture, has_history});
     if (settings.anti_alias) {
         launch(*queue_, "anti_alias", own.count() * width_,
-               AntiAlias{picture, was_at_.data(), shown(frames_), now, width_, height_, has_history, steady, own});
+               AntiAlias{picture, features.view().emission, was_at_.data(), shown(frames_), now, width_, height_,
+                         has_history, steady, own});
     }
     last_camera_ = camera;
     ++frames_;

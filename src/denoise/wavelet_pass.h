@@ -48,8 +48,8 @@ struct WaveletPass {
         const float alpha = alpha_of(own);
         const float variance = variance_of(from.diffuse, diffuse.w, rows, columns),
                     gloss_variance = has_gloss ? variance_of(from.gloss, gloss.w, rows, columns) : 0.0f;
-        Sum of_diffuse(diffuse, tolerance * safe_sqrt(variance));
-        Sum of_gloss(gloss, kOfGloss * safe_sqrt(gloss_variance));
+        Sum of_diffuse(diffuse, variance, tolerance);
+        Sum of_gloss(gloss, gloss_variance, kOfGloss);
         const float bend_of_diffuse = 64.0f * trust(of_diffuse.centre, variance);
         // Curvature makes reflections diverge, and roughness limits how much reflections of neighbours differ.
         const float bend_of_gloss = 64.0f + 8.0f / max(alpha, 0.002f),
@@ -73,7 +73,8 @@ struct WaveletPass {
     }
 
 private:
-    static constexpr float kOfGloss = 8; // tolerance
+    static constexpr float kOfGloss = 8;       // tolerance
+    static constexpr float kSurest = 0x1p-12f; // least ratio of variances, so that a tap of black samples still counts
 
     /// Trust in guides other than the light itself, from min_trust to 1: the noisier the light, the less. If a
     /// sample says little, light of neighbours with other normals is nearer to the truth than its own; otherwise each
@@ -82,6 +83,9 @@ private:
         const float square_light = fma(light, light, 1e-12f);
         return max(min_trust, square_light / fma(2.0f, variance, square_light)); // in this order, NaN gives min_trust
     }
+
+    /// Approximates x^(-1/4) of a normal x > 0 to 4 %: an exponent's bits are a logarithm.
+    HD static float inverse_fourth_root(float x) { return float_of(0x4f58cae5u - (bits_of(x) >> 2)); }
 
     /// Approximates exp(-x) at a fifth of its cost: (1 - x / 4)^4, and 0 from 4 on.
     HD static float falloff(float x) { return square(square(max(fma(-0.25f, x, 1.0f), 0.0f))); }
@@ -117,17 +121,21 @@ private:
     /// Weighted sum of one signal: values by their weights, variances by the squares of these.
     struct Sum {
         Rgb light;
-        float variance, weight = 1, centre, inv_deviation;
+        float variance, weight = 1, centre, inv_deviation, inv_around;
 
-        /// `deviation` is the difference of light up to which a tap counts.
-        HD Sum(Float4 own, float deviation)
+        /// `around` is the variance at the pixel and beside it. A tap counts up to `tolerance` deviations.
+        HD Sum(Float4 own, float around, float tolerance)
             : light(rgb_of(own)), variance(own.w), centre(fused_luminance(rgb_of(own))),
-              inv_deviation(1.0f / (deviation + 1e-4f)) {
+              inv_deviation(1.0f / (tolerance * safe_sqrt(around) + 1e-4f)), inv_around(1.0f / max(around, 1e-20f)) {
             if (own.w < 0) weight = variance = inv_deviation = 0; // unknown, so any light is as good
         }
         HD void add(Float4 tap, float kernel, float difference) {
             const float unlike = abs(fused_luminance(rgb_of(tap)) - centre);
-            const float w = tap.w < 0 ? 0.0f : kernel * falloff(fma(unlike, inv_deviation, difference));
+            // A tap that is surer than the pixel takes little of its light. If the pixel took as much of the tap's as
+            // its own variance allows, light would be lost beside each bright and noisy spot. The deviation is then the
+            // geometric mean of both.
+            const float inv = inv_deviation * max(inverse_fourth_root(max(kSurest, tap.w * inv_around)), 1.0f);
+            const float w = tap.w < 0 ? 0.0f : kernel * falloff(fma(unlike, inv, difference));
             light = add_scaled(light, w, rgb_of(tap));
             variance = fma(w * w, tap.w, variance);
             weight += w;

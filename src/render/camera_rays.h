@@ -48,6 +48,12 @@ struct CameraRays {
         const Vec2 on_lens = has_lens() ? sample_2d(sampler, key, kGroupLens) : Vec2{};
         return ray(line(corner_of(pixel), in_filter, on_lens), motion.moves() ? time(sampler, key) : kAtRest);
     }
+    /// The ray from the lens, where `ray` starts, to `point`; parallel rays keep their direction.
+    HD Ray ray_to(const Ray& ray, Vec3 point) const {
+        const Vec3 to = point - ray.origin;
+        if (!has_parallel_rays(view.projection)) return {ray.origin, ray.t_min, normalize(to), ray.t_max};
+        return {point - dot(to, ray.direction) * ray.direction, ray.t_min, ray.direction, ray.t_max};
+    }
     /// Ray through the centre of `pixel`, without the lens.
     HD Ray centre_ray(uint32_t pixel, float time) const {
         const Vec2 corner = corner_of(pixel);

@@ -21,6 +21,8 @@ public:
     void leave(const FirstBounceView& first_bounce) { view_.first_bounce = first_bounce; }
     /// Sets the arrays in which samples store their mirrors from now on. The frame splits its light.
     void follow(const MirrorChainView& mirrors) { view_.mirrors = mirrors; }
+    /// Sets the points to which camera rays go from now on (NoisyFrameView::aims); null: none.
+    void aim(const Float4* points) { view_.aims = points; }
 
     const char* name() const override { return "noisy frame"; }
     /// Clears the frame, which is necessary only for parts of a frame; in a whole frame the next sample overwrites each

@@ -59,6 +59,8 @@ struct NoisyFrameView : GBufferView {
     Float4* emission = nullptr; // rgb, the part of `light` that the camera ray hits directly; Gloss::transmittance
     FirstBounceView first_bounce;
     MirrorChainView mirrors;
+    const Float4* aims = nullptr; // point in world space to which the camera ray of a pixel goes, where w is not 0.
+                                  // Null: all rays go through their pixels
 
     HD bool is_there() const { return light != nullptr; }
     HD bool splits_light() const { return diffuse != nullptr; }

@@ -69,9 +69,8 @@ Restir* FrameSequence::restir_for(const RestirSettings& settings, const RenderSe
 
 bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSettings& settings,
                            const ReconstructionSettings& requested, const RestirSettings& restir, Sink& sink) {
-    // It takes the noise of pixels to be independent, which a history's is not.
     const bool by_oidn = requested.denoiser == FrameDenoiser::Oidn;
-    const FrameTask task = {number, camera, settings, by_oidn ? of_samples_alone(requested) : requested, restir};
+    const FrameTask task = {number, camera, settings, used_by_frames(requested, restir), restir};
     check(task);
     if (camera_before_) { // belongs to another sequence
         camera_before_.reset();
@@ -275,11 +274,13 @@ void FrameSequence::take_restored(const FrameTask& task, const RenderSettings& o
                               rows, was.arrays, {}, [](const RowArray& to) { return to.row_bytes * to.height; },
                               &std::vector<std::byte>::size);
     const auto are_of_scene = [&] { // else a damaged or forged file would lead beyond the scene's arrays
-        const std::span reservoirs(was.arrays.begin() + static_cast<std::ptrdiff_t>(first_reservoirs),
-                                   first_light - first_reservoirs);
-        return Restir::are_of_scene(reservoirs, pictures_.scene().triangle_counts());
+        const std::span all(was.arrays);
+        const auto counts = pictures_.scene().triangle_counts();
+        return (!was.has_reservoirs ||
+                Restir::are_of_scene(all.subspan(first_reservoirs, first_light - first_reservoirs), counts)) &&
+               (!was.has_light || TemporalGradients::are_of_scene(all.subspan(first_light), counts));
     };
-    if (!is_alike || (was.has_reservoirs && !are_of_scene())) {
+    if (!is_alike || !are_of_scene()) {
         cut();
         throw Error(ErrorCode::BadInput, "the history of frames does not fit these settings, or it is damaged");
     }
@@ -330,10 +331,11 @@ TemporalGradientsView FrameSequence::measure_gradients(const RenderSettings& of_
                           reconstruction_->frames() > 0 && before->path == of_light.path;
     if (!is_known) return {};
     NoisyFrame& small = temporal_gradients_->after();
-    render_sample(before->number, before->camera, of_light, small);
     RenderSettings of_small = of_light;
     of_small.width = small.width(), of_small.height = small.height();
     const PictureView picture = pictures_.view_of(before->camera, of_small);
+    if (has_moved_) temporal_gradients_->follow(picture.scene, scene_before(picture));
+    render_sample(before->number, before->camera, of_light, small);
     contacts_->find(small, picture.camera.view, picture.scene, pictures_.scene().tracer(),
                     own_rows(others_, small.height()), TemporalGradientsMemory::kSide);
     take_small(small);

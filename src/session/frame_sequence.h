@@ -19,6 +19,16 @@
 
 namespace pertev {
 
+/// Returns the settings by which frames are reconstructed. Open Image Denoise takes the noise of pixels to be
+/// independent, which a history's is not. Without history and filter no temporal gradients are needed.
+inline ReconstructionSettings used_by_frames(const ReconstructionSettings& requested, const RestirSettings& restir) {
+    ReconstructionSettings used = requested.denoiser == FrameDenoiser::Oidn ? of_samples_alone(requested) : requested;
+    const bool keeps_reservoirs = restir.light != RestirLight::Off && restir.history > 0;
+    const bool follows = used.history > 1 || used.passes > 0 || keeps_reservoirs;
+    used.temporal_gradients = used.temporal_gradients && follows;
+    return used;
+}
+
 class FrameSequence {
 public:
     /// Makes an empty sequence; `pictures` outlives it.

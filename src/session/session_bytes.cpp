@@ -19,6 +19,7 @@
 #include "restir/restir.h"
 #include "session/camera_batch.h"
 #include "session/device_scene.h"
+#include "session/frame_sequence.h"
 #include "session/picture_renderer.h"
 #include "session/post_steps.h"
 #include "tracer/structure_on_device.h"
@@ -130,7 +131,6 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
     const uint32_t width = settings.width, height = settings.height;
     const uint32_t of_light[] = {scaled_side(width, reconstruction), scaled_side(height, reconstruction)};
     const bool by_oidn = reconstruction.denoiser == FrameDenoiser::Oidn;
-    const ReconstructionSettings used = by_oidn ? of_samples_alone(reconstruction) : reconstruction;
     const bool splits = splits_light(scene);
     const Buffer<InstanceView> places_before(queue, scene.scene->instances.size(), "instances before");
     const Tracing tracing(queue, scene, settings_of_frames(settings),
@@ -138,7 +138,7 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
     const NoisyFrame frame(queue, of_light[0], of_light[1], splits);
     const Reconstruction frames(queue, of_light[0], of_light[1]);
     std::optional<ContactFinder> contacts;
-    if (used.temporal_gradients) contacts.emplace(queue, of_light[0], of_light[1]);
+    if (used_by_frames(reconstruction, restir).temporal_gradients) contacts.emplace(queue, of_light[0], of_light[1]);
     std::optional<Restir> sharing;
     if (restir.light != RestirLight::Off)
         sharing.emplace(queue, of_light[0], of_light[1], restir.light, shading_variant(*scene.scene));

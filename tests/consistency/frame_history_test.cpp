@@ -167,8 +167,10 @@ TEST_CASE("a history that names what the scene lacks is refused, on each device"
     KeptSequence first(1, options);
     for (uint32_t k = 0; k <= kKeptFrame; ++k) first.render(k);
     const FrameHistory good = first.history();
-    // Behind the arrays of the reconstruction, and before those of light: reservoirs, hits, normals, bounces.
-    constexpr std::size_t kPixels = 50 * 38, kBounces = 3;
+    // Behind the arrays of the reconstruction: reservoirs, hits, normals, bounces, then light, emission, hits and more
+    // of the small picture.
+    constexpr std::size_t kPixels = 50 * 38, kBounces = 3, kSmallHits = 6;
+    REQUIRE(good.has_light);
     const auto is_bounces = [&](const auto& array) { return array.size() == kPixels * sizeof(BounceReservoir); };
     const auto bounces = std::ranges::find_if(good.arrays, is_bounces);
     REQUIRE(bounces != good.arrays.end());
@@ -214,6 +216,7 @@ TEST_CASE("a history that names what the scene lacks is refused, on each device"
     bad.push_back(forged(lights + kBounces, change_bounce(kFar, 0), BounceReservoir()));
     bad.push_back(forged(lights + kBounces, change_bounce(kNoHit, 0), BounceReservoir()));
     bad.push_back(forged(lights + kBounces, change_bounce(0, kFar), BounceReservoir()));
+    bad.push_back(forged(lights + kSmallHits, change_hit(kFar), Float4()));
     for (std::size_t i = 0; i < bad.size(); ++i) {
         CAPTURE(i);
         for (const std::size_t devices : {1u, 2u}) {

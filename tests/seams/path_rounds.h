@@ -57,7 +57,8 @@ struct BeginRound {
 
     HD void operator()(uint32_t i) const {
         RoundPath<Listener>& path = view.paths[i];
-        path.state = generate_path(job.picture.camera, job.settings, job.film.window.pixel_at(FilmSlot{i}), sample);
+        path.state =
+            generate_path(job.picture.camera, job.settings, nullptr, job.film.window.pixel_at(FilmSlot{i}), sample);
         path.goes_on = true;
         view.store_ray(i);
     }

@@ -21,8 +21,6 @@ constexpr uint32_t kCrossingWidth = 128, kCrossingHeight = 64, kFirstCrossing = 
 /// The number of frames whose trail is measured.
 uint32_t crossing_frames() { return static_cast<uint32_t>(effort(16, 32)); }
 constexpr float kStepOfFrame = 0.125f; // metres, five pixels
-constexpr ReconstructionSettings kRawFrames = {
-    .history = 1, .passes = 0, .clamp_fireflies = false, .clamp_history = false, .anti_alias = false};
 
 /// A floor, a box on it (instance 1) and a small emitter above, which throws the box's shadow to the side.
 Scene scene_of_crossing() {
@@ -97,7 +95,7 @@ std::vector<Image> references_of_crossing(uint32_t max_depth) {
 
 /// Returns the light of frames over that of references, on the floor where the shadow was up to kTrail frames before.
 double light_in_trail(const std::vector<Image>& references, const RestirSettings& restir, bool follows = true) {
-    ReconstructionSettings raw = kRawFrames;
+    ReconstructionSettings raw = of_samples_alone({});
     raw.temporal_gradients = follows;
     Messages messages;
     Scene scene = scene_of_crossing();

@@ -138,6 +138,18 @@ TEST_CASE("variances are filtered by squared weights, and the filter uses their 
     CHECK(filter_once(wall, light, light, 1).diffuse[kLeftOfBorder].x > 1.3f);
 }
 
+TEST_CASE("bright and noisy light beside dark and sure light is kept") {
+    Wall wall;
+    std::vector<Float4> light = halves(1, 3, 0.25f);
+    for (Float4& value : light) {
+        if (value.x < 2) value.w = 1e-4f;
+    }
+    const Filtered passed = filter_once(wall, light, light, 1);
+    CHECK(passed.diffuse[kLeftOfBorder].x < 1.2f);
+    CHECK(passed.diffuse[kLeftOfBorder + 1].x > 2.9f);
+    CHECK(passed.gloss[kLeftOfBorder + 1].x > 2.9f);
+}
+
 namespace {
 
 /// Signals of the first frame of a wall whose light is 1 everywhere, but `brightest` at one pixel.
@@ -240,13 +252,13 @@ namespace {
 /// Returns the tested pixel of a picture with `own` at the centre of `around`, and a history of `old` to the left of
 /// column kStageHalf + 2. The light has been steady for `frames` frames, of which 8 are enough, and the pixels were at
 /// rest for `at_rest` frames before.
-float shown_after(float own, float around, float old, bool is_near_moving, float frames = 7, float at_rest = 6) {
+float shown_after(float own, float around, float old, bool is_near_moving, float frames = 7, uint32_t at_rest = 6) {
     std::vector<Float4> picture(kStagePixels, Float4{around, 0, 0, 5}), before(kStagePixels, Float4{0, 0, 0, 0}),
         shown(kStagePixels);
     std::vector<Vec2> was_at;
     for (uint32_t i = 0; i < kStagePixels; ++i) {
         was_at.push_back({static_cast<float>(i % kStageSide) + 0.5f, static_cast<float>(i / kStageSide) + 0.5f});
-        before[i].w = at_rest;
+        before[i].w = ShownMemory{at_rest, 0}.pack();
         if (i % kStageSide < kStageHalf + 2) before[i].x = old;
     }
     picture[kLeftOfBorder].x = own;
@@ -254,10 +266,10 @@ float shown_after(float own, float around, float old, bool is_near_moving, float
         picture[kLeftOfBorder + 1].w = 2;
         was_at[kLeftOfBorder + 1].x += 6;
     }
-    const std::vector<Float4> means(kStagePixels, Float4{0, 0, 0, frames}), guide(kStagePixels);
-    const AntiAlias stage = {
-        picture.data(), was_at.data(), before.data(), shown.data(),
-        kStageSide,     kStageSide,    true,          {means.data(), guide.data(), kStageSide, kStageSide, 8}};
+    const std::vector<Float4> means(kStagePixels, Float4{0, 0, 0, frames}), guide(kStagePixels), dark(kStagePixels);
+    const AntiAlias stage = {picture.data(), dark.data(),  was_at.data(),
+                             before.data(),  shown.data(), kStageSide,
+                             kStageSide,     true,         {means.data(), guide.data(), kStageSide, kStageSide, 8}};
     for (uint32_t i = 0; i < kStagePixels; ++i) stage(i);
     return shown[kLeftOfBorder].x;
 }
@@ -293,15 +305,48 @@ float shown_on_line(float own, float old, float frames, Contact contact) {
         if (i / kStageSide == kLeftOfBorder / kStageSide) picture[i].x = own, before[i].x = old;
     }
     const std::vector<Float4> means(kStagePixels, Float4{0, 0, 0, frames}),
-        guide(kStagePixels, pack({{0, 0, 1}, 1, 5, object_with(7, contact)}));
-    const AntiAlias stage = {
-        picture.data(), was_at.data(), before.data(), shown.data(),
-        kStageSide,     kStageSide,    true,          {means.data(), guide.data(), kStageSide, kStageSide, 99}};
+        guide(kStagePixels, pack({{0, 0, 1}, 1, 5, object_with(7, contact)})), dark(kStagePixels);
+    const AntiAlias stage = {picture.data(), dark.data(),  was_at.data(),
+                             before.data(),  shown.data(), kStageSide,
+                             kStageSide,     true,         {means.data(), guide.data(), kStageSide, kStageSide, 99}};
     for (uint32_t i = 0; i < kStagePixels; ++i) stage(i);
     return shown[kLeftOfBorder].x;
 }
 
+/// Returns a shown pixel whose history of 0.25 has seen the emission `seen`, after `frames` frames in motion that hit
+/// nothing but darkness. `may_change` is that of SteadyLight.
+Float4 shown_of_emitter(float seen, uint32_t frames, bool may_change) {
+    const std::vector<Float4> picture(kStagePixels, Float4{0, 0, 0, 5}), means(kStagePixels), guide(kStagePixels);
+    std::vector<Float4> before(kStagePixels, Float4{0.25f, 0.125f, 0, ShownMemory{0, seen}.pack()}), shown = before;
+    std::vector<Vec2> was_at;
+    for (uint32_t i = 0; i < kStagePixels; ++i) {
+        was_at.push_back({static_cast<float>(i % kStageSide) + 1.5f, static_cast<float>(i / kStageSide) + 0.5f});
+    }
+    for (uint32_t k = 0; k < frames; ++k) {
+        const AntiAlias stage = {
+            picture.data(), picture.data(), was_at.data(),
+            before.data(),  shown.data(),   kStageSide,
+            kStageSide,     true,           {means.data(), guide.data(), kStageSide, kStageSide, 8, may_change}};
+        for (uint32_t i = 0; i < kStagePixels; ++i) stage(i);
+        std::swap(before, shown);
+    }
+    return before[kLeftOfBorder];
+}
+
 } // namespace
+
+TEST_CASE("in a scene at rest, the light of an emitter that frames miss stays as long as it may be there") {
+    CHECK(shown_of_emitter(2, 1, true).x == 0); // clamped to the darkness around
+    const Float4 kept = shown_of_emitter(2, 1, false);
+    CHECK(kept.x == doctest::Approx(0.8 * 0.25)); // a pixel of motion: the frame has a weight of 0.2
+    CHECK(kept.y == doctest::Approx(0.8 * 0.125));
+    CHECK(ShownMemory::unpack(kept.w).emitted == doctest::Approx(0.9 * 2).epsilon(0.01));
+    CHECK(shown_of_emitter(2, 4, false).x == doctest::Approx(0.4096 * 0.25));
+    // No mean is brighter than what was seen.
+    CHECK(shown_of_emitter(0.1f, 1, false).x == doctest::Approx(0.8 * 0.9 * 0.1).epsilon(0.01));
+    CHECK(ShownMemory::unpack(ShownMemory{123, 0.5f}.pack()).frames_at_rest == 123);
+    CHECK(ShownMemory::unpack(ShownMemory{70000, 0.5f}.pack()).emitted == 0.5f);
+}
 
 TEST_CASE("light is steady after enough frames, or at once where the scene is that of the frame before") {
     const std::vector<Float4> means(kStagePixels, Float4{0, 0, 0, 3}), guide(kStagePixels);

@@ -128,7 +128,7 @@ TEST_CASE("vertex numbers: eight paths begun at once equal those begun one by on
                     samples.begin([&](const auto& make) {
                         const PathState path = make();
                         const PathState from = path_of(i++, count);
-                        const PathState expected = generate_path(camera, settings, from.pixel, from.sample);
+                        const PathState expected = generate_path(camera, settings, nullptr, from.pixel, from.sample);
                         CHECK(path.pixel == expected.pixel);
                         CHECK(path.sample == expected.sample);
                         CHECK(path.origin == expected.origin);

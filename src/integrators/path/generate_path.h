@@ -1,9 +1,11 @@
 #pragma once
 
-// First step of a path: draws the position in the pixel and on the lens.
+// First step of a path: draws the position in the pixel and on the lens. Where a frame aims at a point, the ray goes
+// there instead of through its pixel.
 
 #include "integrators/path/path_settings.h"
 #include "integrators/path/path_state.h"
+#include "math/float4.h"
 #include "render/batch_view.h"
 
 namespace pertev {
@@ -21,10 +23,17 @@ HD inline PathState begin_path(const CameraRays& camera, uint32_t pixel, uint32_
     return path;
 }
 
-HD inline PathState generate_path(const CameraRays& camera, const PathSettings& settings, uint32_t pixel,
-                                  uint32_t sample) {
+/// The camera ray of a pixel, which is `ray` unless it is aimed (NoisyFrameView::aims).
+HD inline Ray aimed_ray(const CameraRays& camera, const Float4* aims, uint32_t pixel, const Ray& ray) {
+    if (aims == nullptr) return ray;
+    const Float4 aim = aims[pixel];
+    return aim.w != 0 ? camera.ray_to(ray, {aim.x, aim.y, aim.z}) : ray;
+}
+
+HD inline PathState generate_path(const CameraRays& camera, const PathSettings& settings, const Float4* aims,
+                                  uint32_t pixel, uint32_t sample) {
     const SampleKey key = sample_key(settings, pixel, sample);
-    return begin_path(camera, pixel, sample, camera.ray(pixel, settings.sampler, key),
+    return begin_path(camera, pixel, sample, aimed_ray(camera, aims, pixel, camera.ray(pixel, settings.sampler, key)),
                       camera.time(settings.sampler, key));
 }
 

@@ -15,8 +15,10 @@ class LaneSamples {
     using Words = WordOf<Floats>;
 
 public:
-    LaneSamples(const CameraRays& camera, const PathSettings& settings, const BatchView& batch = {})
-        : camera_(&camera), settings_(settings), batch_(batch) {}
+    /// `aims` are those of NoisyFrameView.
+    LaneSamples(const CameraRays& camera, const PathSettings& settings, const BatchView& batch = {},
+                const Float4* aims = nullptr)
+        : camera_(&camera), settings_(settings), batch_(batch), aims_(aims) {}
 
     bool is_full() const { return count_ == kLanes; }
     /// Returns whether the pixel is in the same picture of a batch as the samples so far.
@@ -47,7 +49,8 @@ public:
         for (uint32_t i = 0; i < count_; ++i) {
             const float time = camera_->is_open ? unit_interval(times[i]) : kAtRest;
             const float* const row = rows[i];
-            const Ray ray = camera_->ray({{row[0], row[1], row[2]}, {row[3], row[4], row[5]}}, time);
+            const Ray through = camera_->ray({{row[0], row[1], row[2]}, {row[3], row[4], row[5]}}, time),
+                      ray = aimed_ray(*camera_, aims_, pixels_[i], through);
             take([&] { return begin_path(*camera_, pixels_[i], keys_.sample[i], ray, time); });
         }
         count_ = 0;
@@ -76,6 +79,7 @@ private:
     const CameraRays* camera_; // the camera of all lanes
     const PathSettings& settings_;
     const BatchView batch_;
+    const Float4* const aims_;
     SampleKeyOf<Words> keys_; // lanes beyond `count_` hold previous samples or 0, whose rays are not used
     float corners_x_[kLanes] = {}, corners_y_[kLanes] = {};
     uint32_t pixels_[kLanes];

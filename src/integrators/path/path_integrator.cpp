@@ -222,7 +222,7 @@ void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView&
     const BeginOrder samples = {film.window, first, count};
     PathJob job = job_for(film);
     job.film.is_exclusive = true; // all samples of a pixel are one thread's
-    const TileRasterView* const raster = raster_ ? &raster_->view() : nullptr;
+    const TileRasterView* const raster = rasterises(job) ? &raster_->view() : nullptr;
     trace_ranges(film.window.count(), kLoopCount, [&](uint64_t begin, uint64_t end) {
         RayCounts counts;
         if (is_abandoned()) return counts;
@@ -343,9 +343,9 @@ void PathIntegrator::begin_paths(Wavefront& w, const Work& work, const Round& ro
     // The tracer reads the keys of camera rays that meet hidden backs, too, though it does not need them there.
     const bool any_keys = picture_.scene.any_alpha != 0 || picture_.scene.any_hidden_back != 0;
     const GeneratePaths<kInBatch> generate = {work.job, work.samples, round.counts, last, any_keys, paths};
-    if (!raster_ && begin_and_trace(queue_, *tracer_, fresh, generate, hits)) return;
+    if (!rasterises(work.job) && begin_and_trace(queue_, *tracer_, fresh, generate, hits)) return;
     launch(queue_, "generate_paths", fresh, generate);
-    if (raster_) {
+    if (rasterises(work.job)) {
         tracer_->timed(RayKind::Camera, [&] { raster_->find_hits(paths.query_back(last), fresh, hits); });
     } else {
         tracer_->find_hits(RayKind::Camera, paths.query_back(last), fresh, hits, round.pool(RayKind::Camera));

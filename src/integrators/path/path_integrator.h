@@ -63,6 +63,8 @@ private:
         PathJob job;
     };
     PathJob job_for(const FilmView& film) const;
+    /// Returns whether camera rays are rasterised, which those with an aim are not.
+    bool rasterises(const PathJob& job) const { return raster_.has_value() && job.film.frame.aims == nullptr; }
     /// A round of a wavefront.
     struct Round {
         RoundCounts* counts; // on the device

@@ -254,7 +254,7 @@ template <class Listener>
 void render_group(const PathJob& job, const LoopTrees& trees, const BeginOrder& order, PixelRange range,
                   RayCounts& counts) {
     PathGroup<Listener> group(job, trees);
-    LaneSamples<Floats> samples(job.picture.camera, job.settings, job.picture.batch);
+    LaneSamples<Floats> samples(job.picture.camera, job.settings, job.picture.batch, job.film.frame.aims);
     const auto trace = [&](const auto& make) {
         group.add(make);
         while (group.is_full()) group.advance(counts);

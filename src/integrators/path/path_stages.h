@@ -65,7 +65,7 @@ struct GeneratePaths {
 private:
     HD PathState begin(const PixelSample& begun) const {
         if (kInBatch) return generate_path(job.picture.batch, job.settings.sampler, begun.pixel, begun.sample);
-        return generate_path(job.picture.camera, job.settings, begun.pixel, begun.sample);
+        return generate_path(job.picture.camera, job.settings, job.film.frame.aims, begun.pixel, begun.sample);
     }
 };
 
