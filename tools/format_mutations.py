@@ -246,4 +246,8 @@ MUTATIONS = [
     ("triangles with a power each are divided", "unit/project_textures", ("src/formats/described/project_textures.cpp", "has_power ? 0 :", "has_power && left == 0 ? 0 :")),
     ("pbrt: two files include each other without end", "unit/read_pbrt", ("src/formats/pbrt/statements.cpp", "++repeated_ > kMostRepeated", "++repeated_ > (std::size_t(1) << 40)")),
     ("meshes without coordinates lose those of mappings", "unit/project_textures", ("src/formats/described/finish_meshes.cpp", "set < mesh.uv.size(); ++set) take", "set < 0 * mesh.uv.size(); ++set) take")),
+    ("a camera has the size that the file suggests for the first", "unit/settings robust/cli_cameras", ("src/settings/check_settings.cpp", "of_camera ? is_of_own :", "of_camera ? is_of_own && false :")),
+    ("cameras of a list have the size that the file suggests for the first", "robust/cli_cameras", ("src/session/pictures/prepare_render.cpp", "    own.given.erase(size);\n    own.size.reset();\n", "")),
+    ("mitsuba: what is nearer than a clipping plane is silent", "unit/read_mitsuba_sensors", ("src/formats/mitsuba/clipping.cpp", "return abs(middle) <= reach;", "return abs(middle) < 0 * reach;")),
+    ("mitsuba: clipping planes cut what lies beside the view", "unit/read_mitsuba_sensors", ("src/formats/mitsuba/clipping.cpp", "if (!overlap(own, box)) return false;", "static_cast<void>(&overlap);")),
 ]

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "base/error.h"
+#include "scene/suggested_setting.h"
 #include "settings/value_names.h"
 
 namespace pertev {
@@ -124,17 +125,17 @@ std::string overruled_setting(const SettingConflict& conflict, const PictureOpti
     return "";
 }
 
-void apply_suggestions(const Scene& scene, uint32_t verbs, PictureOptions& options, Sink& sink) {
-    for (const SuggestedSetting& suggested : scene.suggested) {
-        if (options.is_given(suggested.name)) continue;
-        if (options.real_time && suggested.name == "spp") continue; // real-time frames have one sample
-        const Setting* const setting = find_setting(suggested.name);
+void apply_suggestions(const Scene& scene, const Camera* own, uint32_t verbs, PictureOptions& options, Sink& sink) {
+    const auto apply = [&](const SuggestedSetting& suggested, std::string_view name) {
+        if (options.is_given(name)) return;
+        if (options.real_time && name == "spp") return; // real-time frames have one sample
+        const Setting* const setting = find_setting(name);
         try {
             if (setting == nullptr || !setting->is_kept || setting->opens_scene) {
-                throw Error(ErrorCode::BadInput, suggested.name, suggested.text,
+                throw Error(ErrorCode::BadInput, std::string(name), suggested.text,
                             "not a setting that a scene file can suggest");
             }
-            if ((setting->verbs & verbs) == 0) continue;
+            if ((setting->verbs & verbs) == 0) return;
             PictureOptions with = options;
             set_value(with, *setting, std::span(&suggested.text, 1), SettingOrigin::Scene);
             if (!find_conflict(with, verbs)) options = with;
@@ -142,6 +143,14 @@ void apply_suggestions(const Scene& scene, uint32_t verbs, PictureOptions& optio
             Remark why = error.remark();
             why.location = FileLocation{options.scene.scene};
             sink.leave_out(std::move(why));
+        }
+    };
+    // A camera has its own suggestions first, then those for all.
+    for (const bool of_camera : {true, false}) {
+        for (const SuggestedSetting& suggested : scene.suggested) {
+            const SuggestedFor is_for = parts_of_suggested(suggested.name);
+            const bool is_of_own = own != nullptr && !own->name.empty() && is_for.camera == own->name;
+            if (of_camera ? is_of_own : is_for.camera.empty()) apply(suggested, is_for.setting);
         }
     }
 }

@@ -40,9 +40,9 @@ void check_settings(const PictureOptions& options, uint32_t verbs);
 /// otherwise, and so does one with the default value, which a file may contain too. Empty if neither does.
 std::string overruled_setting(const SettingConflict& conflict, const PictureOptions& options);
 
-/// Adds to `options` the settings of `verbs` that a scene's file suggests, in its order, except for those that were
-/// given and those in conflict with them. Unknown settings, invalid values, and settings by which files are opened
-/// are skipped with a warning, because the file is open already.
-void apply_suggestions(const Scene& scene, uint32_t verbs, PictureOptions& options, Sink& sink);
+/// Adds to `options` the settings of `verbs` that a scene's file suggests for pictures of its camera `own` (null:
+/// none), in its order, except for those that were given and those in conflict with them. Unknown settings, invalid
+/// values, and settings by which files are opened are skipped with a warning, because the file is open already.
+void apply_suggestions(const Scene& scene, const Camera* own, uint32_t verbs, PictureOptions& options, Sink& sink);
 
 } // namespace pertev

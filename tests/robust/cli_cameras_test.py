@@ -182,6 +182,19 @@ class ManyCameras(CliTest):
                 self.refuse(2, *front, "--stereo", "0.1", "-o", "{name}.exr", *flags, says=[says])
         self.refuse(2, *self.many("--stereo", "0.1", cameras=[FRONT, dict(SIDE, eye_offset=1)]), says=["/cameras/1", "--stereo"])
 
+    def test_each_camera_of_a_file_has_the_size_of_its_own_film(self):
+        sensors = "".join(f'<sensor type="perspective" id="{name}"><film type="hdrfilm"><integer name="width" value="{width}"/>'
+                          '<integer name="height" value="20"/></film></sensor>' for name, width in [("A", 32), ("B", 40)])
+        write(self.path("two.xml"), f'<scene version="3.0.0">{sensors}<shape type="cube"/></scene>')
+        flags = ["render", "two.xml", "--spp", "1", "--device", "cpu", "-o"]
+        for camera, own, size in [("A", [], (32, 20)), ("B", [], (40, 20)), ("1", [], (40, 20)), ("B", ["--size", "7x5"], (7, 5))]:
+            self.succeed(*flags, "x.exr", "--camera", camera, *own)
+            self.assertEqual(read_exr(self.path("x.exr"))[:2], size)
+            self.assertEqual("size" in self.info("x.exr").get("pertev.by_scene", "").split(), not own)
+        write(self.path("views.json"), json.dumps({"cameras": [{"name": "a", "camera": "A"}, {"name": "b", "camera": "B"}]}))
+        self.succeed(*flags, "{name}.exr", "--cameras", "views.json")
+        self.assertEqual([read_exr(self.path(f"{name}.exr"))[:2] for name in "ab"], [(32, 20), (40, 20)])
+
     def test_an_invalid_file_of_cameras_is_refused_with_the_location(self):
         for camera, says in [({"name": "front"}, "/cameras/1"), ({"spp": 4}, "spp"), ({"fov": 400}, "/cameras/1"),
                              ({"eye": [0, 0, 1], "camera_pose": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]}, "/cameras/1")]:

@@ -368,7 +368,7 @@ TEST_CASE("a scene file's suggestions hold unless a given setting excludes them"
     options.given["seed"] = SettingOrigin::Caller;
     options.render.path.seed = 3;
     Messages messages;
-    apply_suggestions(scene, kRender, options, messages);
+    apply_suggestions(scene, nullptr, kRender, options, messages);
     CHECK(options.render.samples == 64);
     CHECK(options.size == PictureSize{320, 240});
     CHECK(options.render.integrator == IntegratorKind::PhotonMap);
@@ -384,14 +384,31 @@ TEST_CASE("a scene file's suggestions hold unless a given setting excludes them"
     PictureOptions real_time;
     real_time.real_time = true;
     real_time.render.samples = 1;
-    apply_suggestions(scene, kRender, real_time, messages);
+    apply_suggestions(scene, nullptr, kRender, real_time, messages);
     CHECK(real_time.render.samples == 1);
 
     PictureOptions whitted;
     whitted.render.integrator = IntegratorKind::Whitted;
     whitted.given["integrator"] = SettingOrigin::File;
-    apply_suggestions(scene, kRender, whitted, messages);
+    apply_suggestions(scene, nullptr, kRender, whitted, messages);
     CHECK(whitted.render.integrator == IntegratorKind::Whitted);
     CHECK_FALSE(whitted.is_given("photons"));
     CHECK(whitted.given.at("ambient") == SettingOrigin::Scene);
+}
+TEST_CASE("a suggestion for one camera holds for pictures of that camera alone") {
+    Scene scene;
+    scene.cameras.resize(3);
+    scene.cameras[1].name = "B@";
+    scene.suggested = {{"size", "320x240"}, {"spp", "64"}, {"size@B@", "40x20"}};
+    const auto size_of = [&](const Camera* own, bool is_given = false) {
+        PictureOptions options;
+        if (is_given) options.size = {7, 5}, options.given["size"] = SettingOrigin::Caller;
+        apply_suggestions(scene, own, kRender, options, nobody());
+        CHECK(options.render.samples == 64);
+        return options.size.value();
+    };
+    CHECK(size_of(nullptr) == PictureSize{320, 240});
+    CHECK(size_of(&scene.cameras[0]) == PictureSize{320, 240});
+    CHECK(size_of(&scene.cameras[1]) == PictureSize{40, 20});
+    CHECK(size_of(&scene.cameras[1], true) == PictureSize{7, 5});
 }

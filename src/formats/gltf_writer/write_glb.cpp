@@ -19,6 +19,7 @@
 #include "math/frame.h"
 #include "math/portable_math.h"
 #include "scene/intensity_table.h"
+#include "scene/suggested_setting.h"
 
 namespace pertev {
 namespace glb {
@@ -252,8 +253,11 @@ private:
         if (scene_.file_scenes.size() > 1) lose("the file's other scenes are lost");
         if (!scene_.suggested.empty()) {
             std::vector<std::string> texts;
-            for (const SuggestedSetting& setting : scene_.suggested)
-                texts.push_back(fmt::format("`{}={}`", setting.name, setting.text));
+            for (const SuggestedSetting& suggested : scene_.suggested) {
+                const auto [setting, camera] = parts_of_suggested(suggested.name);
+                texts.push_back(fmt::format("`{}={}`", setting, suggested.text));
+                if (!camera.empty()) texts.back() += fmt::format(" of {}", shortened(camera));
+            }
             lose(fmt::format("the settings that the file suggests are lost: {}", fmt::join(texts, " ")));
         }
     }

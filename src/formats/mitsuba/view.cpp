@@ -11,9 +11,11 @@
 #include "formats/described/transforms.h"
 #include "formats/described/usable_values.h"
 #include "formats/files/closest_name.h"
+#include "formats/mitsuba/clipping.h"
 #include "formats/mitsuba/parse_values.h"
 #include "math/double_pi.h"
 #include "math/portable_math.h"
+#include "scene/suggested_setting.h"
 
 namespace pertev::mitsuba {
 namespace {
@@ -62,7 +64,9 @@ void leave_out_unknown_type(const Object& object, std::span<const std::string_vi
                                                    did_you_mean(object.type, known))});
 }
 
-void suggest_filter(Object& film, Reading& reading, Scene& scene) {
+using Suggestions = std::vector<SuggestedSetting>;
+
+void suggest_filter(Object& film, Reading& reading, Suggestions& suggested) {
     const std::vector<Object*> filters = objects_in(film, "rfilter", reading);
     Sink& sink = reading.sink();
     if (filters.empty()) return;
@@ -85,20 +89,20 @@ void suggest_filter(Object& film, Reading& reading, Scene& scene) {
     }
     parameters.leave_out_unknown(sink);
     if (!(radius > 0)) return;
-    scene.suggested.push_back({"filter", name});
-    scene.suggested.push_back({"filter_radius", fmt::format("{:.6g}", radius)});
+    suggested.push_back({"filter", name});
+    suggested.push_back({"filter_radius", fmt::format("{:.6g}", radius)});
 }
 
-FilmSize size_of(Object& sensor, Reading& reading, Scene* suggest) {
+FilmSize size_of(Object& sensor, Reading& reading, Suggestions& suggested) {
     Sink& sink = reading.sink();
     FilmSize size;
     const std::vector<Object*> films = objects_in(sensor, "film", reading);
-    if (films.empty()) return size;
+    const auto suggest_size = [&] { suggested.push_back({"size", fmt::format("{}x{}", size.width, size.height)}); };
+    if (films.empty()) return suggest_size(), size;
     Object& film = *films.front();
     Parameters& parameters = film.parameters;
     size.width = std::clamp<int64_t>(parameters.integer("width", size.width, sink), 1, kMaxImageSide);
     size.height = std::clamp<int64_t>(parameters.integer("height", size.height, sink), 1, kMaxImageSide);
-    if (suggest == nullptr) return size;
     constexpr std::array<std::string_view, 5> kFilms = {"hdrfilm", "ldrfilm", "mfilm", "specfilm", "tiledhdrfilm"};
     leave_out_unknown_type(film, kFilms, sink);
     const bool is_cropped = parameters.integer("crop_offset_x", 0, sink) != 0 ||
@@ -112,8 +116,8 @@ FilmSize size_of(Object& sensor, Reading& reading, Scene* suggest) {
     parameters.ignore({"file_format", "pixel_format", "component_format", "filename", "banner", "gamma", "exposure",
                        "tonemap_method", "attach_log", "high_quality_edges", "sample_border", "compensate", "metadata",
                        "key", "burn"});
-    suggest->suggested.push_back({"size", fmt::format("{}x{}", size.width, size.height)});
-    suggest_filter(film, reading, *suggest);
+    suggest_size();
+    suggest_filter(film, reading, suggested);
     parameters.leave_out_unknown(sink);
     return size;
 }
@@ -159,9 +163,14 @@ std::optional<Camera> make_camera(Object& sensor, const FilmSize& size, const Do
     }
     camera.world_from_camera = *rigid;
     if (sensor.type == "orthographic") {
-        const DoubleVec3 x = {to_world.row0.x, to_world.row1.x, to_world.row2.x};
+        const DoubleVec3 x = {to_world.row0.x, to_world.row1.x, to_world.row2.x},
+                         y = {to_world.row0.y, to_world.row1.y, to_world.row2.y};
+        const double across = std::sqrt(dot(x, x)), high = std::sqrt(dot(y, y));
         camera.projection = Projection::Orthographic;
-        camera.ortho_height = static_cast<float>(2 * std::sqrt(dot(x, x)) / size.aspect());
+        camera.ortho_height = static_cast<float>(2 * across / size.aspect());
+        if (std::abs(high - across) > 1e-4 * across || std::abs(dot(x, y)) > 1e-4 * across * high)
+            sink.leave_out({sensor.location(), "the scale along y of an orthographic sensor, or its skew, is left out; "
+                                               "that along x is used both ways"});
     } else {
         set_perspective(sensor, size, camera, sink);
     }
@@ -181,16 +190,38 @@ std::optional<Camera> make_camera(Object& sensor, const FilmSize& size, const Do
     return camera;
 }
 
-void suggest_samples(Object& sensor, Reading& reading, Scene& scene) {
+void suggest_samples(Object& sensor, Reading& reading, Suggestions& suggested) {
     for (Object* const sampler : objects_in(sensor, "sampler", reading)) {
         const int64_t count = sampler->parameters.integer("sample_count", 0, reading.sink());
-        if (count > 0)
-            scene.suggested.push_back({"spp", fmt::format("{}", std::min<int64_t>(count, kMaxSamplesPerPixel))});
+        if (count > 0) suggested.push_back({"spp", fmt::format("{}", std::min<int64_t>(count, kMaxSamplesPerPixel))});
         constexpr std::array<std::string_view, 8> kSamplers = {"independent", "stratified", "multijitter", "orthogonal",
                                                                "ldsampler",   "halton",     "hammersley",  "sobol"};
         leave_out_unknown_type(*sampler, kSamplers, reading.sink());
         sampler->parameters.ignore({"seed", "scramble", "dimension", "jitter"});
         sampler->parameters.leave_out_unknown(reading.sink());
+    }
+}
+
+/// Leaves out the clipping planes of a sensor that cut anything.
+void leave_out_clipping(Object& sensor, const Camera& camera, const Scene& scene, Sink& sink) {
+    Parameters& parameters = sensor.parameters;
+    const double near = parameters.number("near_clip", 0.01, sink), far = parameters.number("far_clip", 10000, sink);
+    const Clipping cut = find_clipping(scene, camera, static_cast<float>(near), static_cast<float>(far));
+    const auto leave_out = [&](const char* name, double distance, const char* where) {
+        const Parameter* const stated = parameters.find(name);
+        sink.leave_out({stated != nullptr ? parameters.location_of(*stated) : sensor.location(),
+                        fmt::format("the {} of {} is left out; {} is visible", name, distance, where)});
+    };
+    if (cut.is_near) leave_out("near_clip", near, "what is nearer");
+    if (cut.is_far) leave_out("far_clip", far, "what is farther");
+}
+
+/// Adds what another sensor than the first suggests, as far as it differs from what the first one does.
+void add_suggestions_of(const Camera& camera, const Suggestions& suggested, Scene& scene) {
+    for (const SuggestedSetting& own : suggested) {
+        const auto first = std::ranges::find(scene.suggested, own.name, &SuggestedSetting::name);
+        if (first != scene.suggested.end() && first->text == own.text) continue;
+        scene.suggested.push_back({suggested_for_camera(own.name, camera.name), own.text});
     }
 }
 
@@ -269,15 +300,18 @@ void add_view(const View& view, Reading& reading, Scene& scene) {
     const DoubleTransform mirrored = scene_from_world(view, reading.sink());
     for (Object* const sensor : view.sensors) {
         try {
-            const bool is_first = sensor == view.sensors.front();
-            const FilmSize size = size_of(*sensor, reading, is_first ? &scene : nullptr);
-            if (is_first) {
-                suggest_samples(*sensor, reading, scene);
-            } else {
-                (void)objects_in(*sensor, "sampler", reading);
+            Suggestions suggested;
+            const FilmSize size = size_of(*sensor, reading, suggested);
+            suggest_samples(*sensor, reading, suggested);
+            auto camera = make_camera(*sensor, size, mirrored, scene.origin_in_file, reading);
+            if (camera && camera->name.empty()) camera->name = fmt::format("{} {}", sensor->type, scene.cameras.size());
+            if (sensor == view.sensors.front()) {
+                scene.suggested.insert(scene.suggested.end(), suggested.begin(), suggested.end());
+            } else if (camera) {
+                add_suggestions_of(*camera, suggested, scene);
             }
-            if (auto camera = make_camera(*sensor, size, mirrored, scene.origin_in_file, reading)) {
-                if (camera->name.empty()) camera->name = fmt::format("{} {}", sensor->type, scene.cameras.size());
+            if (camera) {
+                leave_out_clipping(*sensor, *camera, scene, reading.sink());
                 scene.cameras.push_back(*std::move(camera));
             }
         } catch (const Error& error) {

@@ -17,6 +17,7 @@
 #include "session/devices/machine.h"
 #include "session/opening/calibrated_camera.h"
 #include "session/opening/camera_list.h"
+#include "session/opening/choose_camera.h"
 #include "session/opening/movable_instances.h"
 #include "session/opening/open_scene.h"
 #include "session/opening/picture_settings.h"
@@ -54,7 +55,7 @@ void check_film(const PictureOptions& options, const RenderSettings& settings, c
 /// Returns the picture's settings, after `options` have taken what the scene's file suggests.
 RenderSettings take_settings(const RenderSetup& ready, PictureOptions& options, uint32_t verbs, const Scene& scene,
                              Sink& sink) {
-    apply_suggestions(scene, verbs, options, sink);
+    apply_suggestions(scene, scene_camera(options.scene.camera.camera, scene), verbs, options, sink);
     if (options.strict) refuse_what_is_left_out(sink.messages(), "nothing was rendered");
     RenderSettings settings = render_settings(options, scene);
     settings.tracers = ready.settings.tracers;
@@ -73,13 +74,24 @@ MovingCamera camera_of(PictureOptions& options, uint32_t verbs, const std::optio
     return camera;
 }
 
+/// Returns the options of one camera of the list, with the size that the scene's file suggests for it.
+PictureOptions options_of_listed(const PictureOptions& options, uint32_t number, uint32_t verbs, const Scene& rest) {
+    PictureOptions own = options_of_camera(options, number, verbs);
+    const auto size = own.given.find("size");
+    if (size == own.given.end() || size->second != SettingOrigin::Scene) return own;
+    own.given.erase(size);
+    own.size.reset();
+    apply_suggestions(rest, scene_camera(own.scene.camera.camera, rest), verbs, own, nobody());
+    return own;
+}
+
 /// Chooses the camera of a scene at rest, or those of a list, whose first gives `settings` its size.
 void set_camera(PictureOptions& options, uint32_t verbs, const std::optional<CameraPath>& path, const Scene& rest,
                 RenderSettings& settings, RenderSetup& ready) {
     Messages messages;
     std::vector<ListedCamera> list;
     for (uint32_t i = 0; options.camera_list && i < options.camera_list->size(); ++i) {
-        PictureOptions own = options_of_camera(options, i, verbs);
+        PictureOptions own = options_of_listed(options, i, verbs, rest);
         set_size(own, rest, settings);
         Messages of_others; // duplicates, dropped
         MovingCamera camera = camera_of(own, verbs, path, settings, rest, i == 0 ? messages : of_others);
@@ -277,7 +289,8 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
 }
 
 void record_settings(const PictureOptions& options, const Scene& scene, uint32_t frame, PictureRecord& record) {
-    if (options.camera_list) return record_settings(options_of_camera(options, frame, kRender), scene, frame, record);
+    if (options.camera_list)
+        return record_settings(options_of_listed(options, frame, kRender, scene), scene, frame, record);
     SceneSource& source = record.scene;
     const CameraChoice& choice = options.scene.camera;
     const Camera* const own = scene_camera(choice.camera, scene);
