@@ -13,7 +13,7 @@
 #include "image/write_image.h"
 #include "math/portable_math.h"
 #include "scene/intensity_table.h"
-#include "tests/support/options.h"
+#include "tests/support/mitsuba_materials.h"
 #include "tests/support/thrown_error.h"
 #include "tests/support/write_text.h"
 
@@ -31,7 +31,7 @@ Scene load_mitsuba_shapes(const fs::path& folder, const std::string& text, Messa
 Scene load_mitsuba_shapes(const std::string& text, const char* version = "3.0.0") {
     Messages messages;
     Scene scene = load_mitsuba_shapes(test::scratch_folder(), text, messages, version);
-    CHECK(messages.left_out() == std::vector<std::string>{});
+    CHECK(test::left_out_besides_backs(messages) == std::vector<std::string>{});
     return scene;
 }
 std::string shape_of(const std::string& type, const std::string& inner = "") {
@@ -207,7 +207,7 @@ TEST_CASE("mitsuba: mesh files have smooth normals unless face_normals is set; f
             shape_of("ply", named_file("a.ply")) +
             shape_of("ply", named_file("a.ply") + "<boolean name=\"flip_tex_coords\" value=\"true\"/>"),
         messages);
-    CHECK(messages.left_out() == std::vector<std::string>{});
+    CHECK(test::left_out_besides_backs(messages) == std::vector<std::string>{});
     REQUIRE(scene.meshes.size() == 5);
     const Mesh& smooth = scene.meshes[0];
     REQUIRE(!smooth.normals.empty());
@@ -233,7 +233,7 @@ TEST_CASE("mitsuba: mesh_attribute has the numbers of a PLY's vertices, for its 
         "value=\"vertex_color\"/></texture></bsdf>";
     const Scene scene = load_mitsuba_shapes(
         folder, shape_of("ply", named_file("c.ply") + colored) + shape_of("ply", named_file("c.ply")), messages);
-    CHECK(messages.left_out() == std::vector<std::string>{});
+    CHECK(test::left_out_besides_backs(messages) == std::vector<std::string>{});
     REQUIRE(scene.meshes.size() == 2);
     REQUIRE(scene.meshes[0].colors.size() == 3);
     CHECK(scene.meshes[0].colors[0].x == doctest::Approx(0.25));
@@ -365,7 +365,7 @@ TEST_CASE("mitsuba: a projector shows its picture upright, with pi times its irr
                                 fmt::format(fmt::runtime(picture), "texture") + look +
                                 "<float name=\"cutoff_angle\" value=\"45\"/></emitter>",
                             messages);
-    CHECK(messages.left_out() == std::vector<std::string>{});
+    CHECK(test::left_out_besides_backs(messages) == std::vector<std::string>{});
     REQUIRE(scene.lights.size() == 2);
     const Light& projector = scene.lights[0];
     CHECK(projector.direction.z == doctest::Approx(-1));

@@ -10,6 +10,7 @@
 #include "formats/mitsuba/read_transform.h"
 #include "formats/read_scene.h"
 #include "math/portable_math.h"
+#include "tests/support/mitsuba_materials.h"
 #include "tests/support/options.h"
 #include "tests/support/thrown_error.h"
 #include "tests/support/write_text.h"
@@ -31,7 +32,7 @@ Scene load_mitsuba(const std::string& text, Messages& messages, const ReadOption
 Scene load_mitsuba(const std::string& text) {
     Messages messages;
     Scene scene = load_mitsuba(text, messages);
-    CHECK(messages.left_out() == std::vector<std::string>{});
+    CHECK(test::left_out_besides_backs(messages) == std::vector<std::string>{});
     return scene;
 }
 
@@ -40,7 +41,7 @@ std::vector<std::string> mitsuba_left_out(const std::string& text) {
     Messages messages;
     const Scene scene = load_mitsuba(in_scene(text + kMitsubaSquare), messages);
     CHECK(scene.instances.size() >= 1);
-    std::vector<std::string> texts = messages.left_out();
+    std::vector<std::string> texts = test::left_out_besides_backs(messages);
     for (std::string& line : texts) line.erase(0, std::min(line.find("scene.xml"), line.size()));
     return texts;
 }
@@ -289,6 +290,10 @@ TEST_CASE("mitsuba: cycles of references and of includes end") {
                .empty());
     CHECK(!mitsuba_left_out("<shape type=\"merge\" id=\"m\"><ref id=\"m\"/></shape>").empty());
     CHECK(!mitsuba_left_out("<include filename=\"scene.xml\"/>").empty());
+    const std::string twice = "<include filename=\"scene.xml\"/><include filename=\"scene.xml\"/>"; // at 16 levels
+    const std::optional<Error> error = test::thrown_error([&] { (void)mitsuba_left_out(twice); });
+    CHECK((error && error->code() == ErrorCode::OverLimit));
+    CHECK(test::says(error, "more than 4096 times"));
 }
 
 TEST_CASE("mitsuba: included files are found beside the scene, in <path> and beside each other") {
@@ -305,7 +310,7 @@ TEST_CASE("mitsuba: included files are found beside the scene, in <path> and bes
         test::write_text(folder / "scene.xml",
                          in_scene("<path value=\"parts/more\"/><include filename=\"parts/a.xml\"/>" + kMitsubaSquare));
     const Scene scene = read_scene(path, {}, messages);
-    CHECK(messages.left_out() == std::vector<std::string>{});
+    CHECK(test::left_out_besides_backs(messages) == std::vector<std::string>{});
     REQUIRE(scene.instances.size() == 3);
     CHECK(scene.instances[0].name == "cube");
     CHECK(scene.instances[1].name == "sphere");

@@ -220,7 +220,7 @@ TEST_CASE("pbrt: a light of a surface that is not there, a motion and an unknown
                         kFlat + kFlat,
                     messages);
     CHECK_FALSE(left_out_at(messages, 5).empty());
-    CHECK(left_out_at(messages, 7).find("\"metal-au-eta\"") != std::string::npos);
+    CHECK(left_out_at(messages, 7).find("\"metal-Au-eta\"") != std::string::npos);
     CHECK_FALSE(left_out_at(messages, 9).empty());
     CHECK(left_out_at(messages, 10).empty()); // once
     const Scene named = load_whole("WorldBegin\nMaterial \"dielectric\" \"spectrum eta\" \"glass-F11\"\n" + kFlat);
@@ -430,6 +430,17 @@ TEST_CASE("gzip: all members are read, and a damaged or multiplied file is refus
     CHECK(gunzip(bytes_of(two), "a.gz", 3'000'000).size() == 3'000'000);
     CHECK(test::is_at(test::thrown_error([&] { (void)gunzip(bytes_of(two), "a.gz", 2'999'999); }), ErrorCode::OverLimit,
                       {"a.gz"}));
+    // A thousandth of what it decompresses to, as a bomb is.
+    std::string bomb;
+    for (const std::string& piece = gzipped(std::string(1 << 24, ' ')); bomb.size() < 17 * piece.size();) bomb += piece;
+    const fs::path scene = test::write_text(test::scratch_folder() / "bomb.pbrt.gz", bomb);
+    Messages messages;
+    const std::optional<Error> error = test::thrown_error([&] { (void)read_scene(scene, {}, messages); });
+    CHECK(test::is_at(error, ErrorCode::OverLimit, {scene.string()}));
+    CHECK(test::says(error, "decompresses to over 264 MiB"));
+    const UnzippedFile file = read_unzipped(test::write_text(scene.parent_path() / "two.gz", two));
+    CHECK(file.bytes.size() == 3'000'000);
+    CHECK(file.size == two.size());
 }
 
 TEST_CASE("pbrt: a scene far from its origin keeps its precision") {

@@ -1,6 +1,7 @@
 #include "formats/files/gunzip.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -38,7 +39,8 @@ std::vector<std::byte> inflate_all(std::span<const std::byte> bytes, int window_
     int state = Z_OK;
     while (state != Z_STREAM_END || (has_members && left > 0 && is_gzip(bytes.last(left)))) {
         if (state == Z_STREAM_END) inflateReset(&stream); // a further member
-        if (content.size() < size + kPiece) content.resize(std::max(2 * content.size(), kPiece));
+        if (content.size() < size + kPiece)
+            content.resize(std::min<uint64_t>(std::max(2 * content.size(), kPiece), limit + kPiece));
         stream.next_in = const_cast<Bytef*>(in + (bytes.size() - left)); // zlib does not write to it
         const auto given = static_cast<uInt>(std::min(left, kPiece));
         stream.avail_in = given;
@@ -70,7 +72,7 @@ bool is_gzip(std::span<const std::byte> bytes) {
 }
 
 std::vector<std::byte> gunzip(std::span<const std::byte> bytes, const std::string& file) {
-    return gunzip(bytes, file, justified_bytes(kFreeMeshBytes, bytes.size()));
+    return gunzip(bytes, file, most_decompressed(bytes.size()));
 }
 
 std::vector<std::byte> gunzip(std::span<const std::byte> bytes, const std::string& file, uint64_t limit) {
@@ -78,12 +80,14 @@ std::vector<std::byte> gunzip(std::span<const std::byte> bytes, const std::strin
 }
 
 std::vector<std::byte> inflate_zlib(std::span<const std::byte> bytes, const std::string& file) {
-    return inflate_all(bytes, MAX_WBITS, file, justified_bytes(kFreeMeshBytes, bytes.size()));
+    return inflate_all(bytes, MAX_WBITS, file, most_decompressed(bytes.size()));
 }
 
-std::vector<std::byte> read_unzipped(const std::filesystem::path& path) {
+UnzippedFile read_unzipped(const std::filesystem::path& path) {
     std::vector<std::byte> bytes = read_file(path);
-    return is_gzip(bytes) ? gunzip(bytes, path.string()) : bytes;
+    const uint64_t size = bytes.size();
+    if (!is_gzip(bytes)) return {std::move(bytes), size};
+    return {gunzip(bytes, path.string()), size};
 }
 
 } // namespace pertev

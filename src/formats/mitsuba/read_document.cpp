@@ -15,6 +15,7 @@
 #include "base/message_text.h"
 #include "base/read_file.h"
 #include "formats/files/closest_name.h"
+#include "formats/files/included_files.h"
 #include "formats/mitsuba/define_values.h"
 #include "formats/mitsuba/parse_values.h"
 #include "formats/mitsuba/read_transform.h"
@@ -194,6 +195,7 @@ private:
         const std::string name = text(node, "filename");
         const auto path = find_file(context_, location_of(node), name);
         if (!path) throw error(node, fmt::format("there is no file {}", shortened(name)));
+        included_.count(*path, files_ > 1, location_of(node));
         const std::vector<std::byte> bytes = read_file(*path);
         read(path->string(), bytes);
     }
@@ -346,6 +348,7 @@ private:
     DefineValues values_;
     File file_;
     int files_ = 0;
+    IncludedFiles included_;
     uint64_t first_bytes_ = 0, elements_ = 0;
 };
 

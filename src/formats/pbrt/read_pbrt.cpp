@@ -19,14 +19,9 @@ bool ends_with_world_end(std::string_view text) {
     return rest.peek().kind == pbrt::TokenKind::End;
 }
 
-} // namespace
-
-Scene read_pbrt(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options, Sink& sink) {
-    return read_pbrt(path, read_unzipped(path), access, options, sink);
-}
-
-Scene read_pbrt(const std::filesystem::path& path, std::span<const std::byte> bytes, const FileAccess& access,
-                const ReadOptions& options, Sink& sink) {
+/// Reads a scene from the text of a file that has `file_bytes` bytes.
+Scene read_text(const std::filesystem::path& path, std::span<const std::byte> bytes, uint64_t file_bytes,
+                const FileAccess& access, const ReadOptions& options, Sink& sink) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     TextureLoader loader(access, sink);
     loader.shrink_to(options.max_texture_size);
@@ -38,8 +33,20 @@ Scene read_pbrt(const std::filesystem::path& path, std::span<const std::byte> by
                                 .is_version_3 = ends_with_world_end(text)};
     pbrt::World world(context);
     pbrt::Statements statements(context, world);
-    statements.read(text, path);
+    statements.read(text, path, file_bytes);
     return world.finish(statements.bytes());
+}
+
+} // namespace
+
+Scene read_pbrt(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options, Sink& sink) {
+    const UnzippedFile file = read_unzipped(path);
+    return read_text(path, file.bytes, file.size, access, options, sink);
+}
+
+Scene read_pbrt(const std::filesystem::path& path, std::span<const std::byte> bytes, const FileAccess& access,
+                const ReadOptions& options, Sink& sink) {
+    return read_text(path, bytes, bytes.size(), access, options, sink);
 }
 
 } // namespace pertev

@@ -15,9 +15,8 @@
 namespace pertev::pbrt {
 namespace {
 
-constexpr std::size_t kMostFiles = 64;      // most includes in each other
-constexpr std::size_t kMostRepeated = 4096; // inclusions by included files of files that were included before
-constexpr std::size_t kMostKept = 1 << 16;  // states of begin statements in each other
+constexpr std::size_t kMostFiles = 64;     // most includes in each other
+constexpr std::size_t kMostKept = 1 << 16; // states of begin statements in each other
 
 std::string_view text_of(const std::vector<std::byte>& bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -83,11 +82,12 @@ const Statements::Statement* Statements::find(std::string_view name) {
     return found == all().end() ? nullptr : &*found;
 }
 
-void Statements::read(std::string_view text, const std::filesystem::path& file) {
-    if (files_ == 0) first_bytes_ = text.size();
-    bytes_ += text.size();
+void Statements::read(std::string_view text, const std::filesystem::path& file, uint64_t file_bytes) {
+    if (files_ == 0) first_bytes_ = file_bytes;
+    bytes_ += file_bytes;
+    text_bytes_ += text.size();
     const uint64_t most = justified_bytes(kFreeMeshBytes, first_bytes_);
-    if (bytes_ > most) {
+    if (text_bytes_ > most) {
         throw Error(
             ErrorCode::OverLimit, FileLocation{file.string()},
             fmt::format("the included files take over {} MiB, more than the scene's file justifies", most >> 20));
@@ -178,14 +178,11 @@ void Statements::read_file(Tokens& tokens, const FileLocation& location, bool ke
         throw Error(ErrorCode::BadInput, location, fmt::format("{} files include each other", files_));
     const auto path = context_.access.find(base_of(context_, location, name), name, context_.sink);
     if (!path) throw Error(ErrorCode::BadInput, location, fmt::format("there is no file {}", shortened(name)));
-    // The scene's own file may include a leaf as often as it says so.
-    if (!included_.insert(*path).second && files_ > 1 && ++repeated_ > kMostRepeated)
-        throw Error(ErrorCode::OverLimit, location,
-                    fmt::format("the same files are included more than {} times", kMostRepeated));
-    const std::vector<std::byte> bytes = read_unzipped(*path);
+    included_.count(*path, files_ > 1, location);
+    const UnzippedFile included = read_unzipped(*path);
     const std::size_t depth = kept_.size();
     if (!keeps_state) kept_.push_back({.state = world_.state});
-    read(text_of(bytes), *path);
+    read(text_of(included.bytes), *path, included.size);
     if (keeps_state || kept_.size() <= depth) return;
     world_.state = kept_[depth].state;
     kept_.resize(depth);

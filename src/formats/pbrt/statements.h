@@ -5,11 +5,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "formats/files/included_files.h"
 #include "formats/pbrt/context.h"
 #include "formats/pbrt/tokens.h"
 #include "formats/pbrt/world.h"
@@ -21,10 +21,11 @@ public:
     /// The arguments must outlive this object.
     Statements(const Context& context, World& world) : context_(context), world_(world) {}
 
-    /// Reads a text. `file` is its path, to which includes are relative. Throws Error(OverLimit) if the files of the
-    /// scene take more than the size of the first one justifies, or the same ones are included very often.
-    void read(std::string_view text, const std::filesystem::path& file);
-    /// The size of all texts so far.
+    /// Reads the text of a file that has `file_bytes`. `file` is its path, to which includes are relative. Throws
+    /// Error(OverLimit) if the files of the scene take more than the size of the first one justifies, or the same ones
+    /// are included very often.
+    void read(std::string_view text, const std::filesystem::path& file, uint64_t file_bytes);
+    /// The size of all files so far.
     uint64_t bytes() const { return bytes_; }
 
 private:
@@ -95,10 +96,10 @@ private:
     const Context& context_;
     World& world_;
     std::vector<Kept> kept_;
-    std::size_t files_ = 0; // open ones
-    uint64_t bytes_ = 0, first_bytes_ = 0;
-    std::set<std::filesystem::path> included_;
-    std::size_t repeated_ = 0; // inclusions by included files of those that were included before
+    std::size_t files_ = 0;                // open ones
+    uint64_t bytes_ = 0, first_bytes_ = 0; // sizes of files on the disk
+    uint64_t text_bytes_ = 0;
+    IncludedFiles included_;
 };
 
 } // namespace pertev::pbrt

@@ -396,7 +396,7 @@ private:
 
 Scene read_ply(const fs::path& path, const FileAccess& access, const ReadOptions& options, Sink& sink) {
     const std::string file = path.string();
-    const std::vector<std::byte> bytes = read_unzipped(path);
+    const std::vector<std::byte> bytes = read_unzipped(path).bytes;
     PlyHeader header = parse_ply_header(bytes, file);
     for (const Remark& repair : header.repairs) sink.warn(repair);
     if (options.geometry_only) header.textures.clear();
