@@ -92,7 +92,8 @@ std::vector<Setting> picture_settings() {
             Of{integrators_that(has_light_path_layers)}, Excludes{"denoise!=none"}, In{kExr}, Recorded::AsUsed,
             Changes::Picture),
         row("light_group", "Picture", "NAME=LIGHTS", FIELD(light_groups),
-            "An EXR layer of lights by name, as in key=window,lamp*, sky=environment or rest=^key. It may be given "
+            "An EXR layer of lights by name, as in key=window,lamp*, sky=environment or rest=^window,lamp*. It may be "
+            "given "
             "again.",
             Of{integrators_that(has_light_path_layers)}, Excludes{"denoise!=none"}, In{kExr}, Recorded::AsUsed,
             Changes::Picture),
