@@ -67,7 +67,7 @@ class LeftOut(CliTest):
         text = ('<scene version="3.0.0">\n<default name="spp" value="2"/><default name="r" value="1"/>\n'
                 '<sensor type="perspective"><film type="hdrfilm"><integer name="width" value="12"/><integer name="height" value="8"/>'
                 '</film><sampler type="independent"><integer name="sample_count" value="$spp"/></sampler></sensor>\n'
-                '<emitter type="constant"><rgb name="radiance" value="$r"/></emitter><shape type="sphere"/>\n')
+                '<emitter type="constant"><rgb name="radiance" value="$r"/></emitter><shape type="sphere"><bsdf type="dielectric"/></shape>\n')
         write(self.path("grey.xml"), text + "</scene>")
         outcome = self.succeed("render", "grey.xml", "-o", "x.exr", "--json", "--strict", "--device", "cpu", "-D", "spp=3", "--define", "r=0")
         done, picture = outcome.events("done")[0], outcome.events("picture")[0]

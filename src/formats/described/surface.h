@@ -43,6 +43,7 @@ struct Surface {
     Material material;
     bool is_nothing = false;        // an interface between media: light passes
     bool has_vertex_colors = false; // its colour is that of the mesh's vertices
+    bool is_one_sided = false;      // its back is black in the file's own renderer
     std::vector<SlotImage> images;
     TextureValue heights; // metres along the normal, if it has an image
     bool has_heights = false;

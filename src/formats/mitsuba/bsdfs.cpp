@@ -54,7 +54,7 @@ uint32_t Bsdfs::surface_of(Object& bsdf) {
     (void)textures_.took_vertex_colors();
     Surface surface = read(bsdf);
     const bool has_vertex_colors = textures_.took_vertex_colors();
-    for_each_part(surface, [&](Surface& part) { warn_of_backs(bsdf, part); });
+    for_each_part(surface, [&](Surface& part) { part.is_one_sided = has_black_back(part); });
     if (surface.beneath.empty()) { // parts of a mixture have their own
         surface.has_vertex_colors = surface.has_vertex_colors || has_vertex_colors;
         surface.material.name = bsdf.id.empty() ? bsdf.type : bsdf.id;
@@ -66,16 +66,13 @@ uint32_t Bsdfs::surface_of(Object& bsdf) {
     return number;
 }
 
-/// Warns once that a surface reflects from its back, too.
-void Bsdfs::warn_of_backs(const Object& bsdf, const Surface& part) {
+/// Returns whether a part of a surface that is in no twosided BSDF has a black back.
+bool Bsdfs::has_black_back(const Surface& part) const {
     const Material& material = part.material;
     const bool is_black = material.kind == MaterialKind::Diffuse && max_component(material.base_color) == 0;
     const bool has_back = material.kind == MaterialKind::Dielectric || material.transmits() ||
                           material.has_diffuse_transmission() || part.is_nothing;
-    if (has_back || is_black || has_two_sides_) return;
-    reading_.sink().warn(
-        {FileLocation{bsdf.location().file},
-         "BSDFs that are not in a twosided one reflect on both faces; their backs are black in Mitsuba"});
+    return !has_back && !is_black && !has_two_sides_;
 }
 
 void Bsdfs::warn_of_nearest(const Object& bsdf, std::string_view nearest) {
@@ -243,7 +240,12 @@ Surface Bsdfs::plastic(Object& bsdf) {
     surface.material.ior = relative_ior(bsdf, "polypropylene");
     surface.material.roughness = 0;
     if (bsdf.type == "roughplastic") read_roughness(bsdf, surface);
-    set_color(surface, &M::specular_color, &M::specular_color_texture, color(bsdf, "specular_reflectance", 1));
+    const TextureValue reflected = color(bsdf, "specular_reflectance", 1);
+    const float most = reflected.has_image() ? 1.0f : max_component(reflected.factor);
+    surface.material.specular_weight = most;
+    if (most > 0) set_color(surface, &M::specular_color, &M::specular_color_texture, reflected.scaled(grey(1 / most)));
+    if (reflected.has_image() || !(reflected.factor == grey(1)))
+        warn_of_nearest(bsdf, "a coat that lets through what its specular_reflectance takes off, above a darker base");
     set_coated_color(surface, color(bsdf, "diffuse_reflectance", 0.5f), CoatModel::Mitsuba,
                      bsdf.parameters.truth("nonlinear", false, reading_.sink()));
     return surface;
@@ -392,6 +394,10 @@ Surface Bsdfs::bumpy(Object& bsdf) {
             return surface;
         }
         map.ref.is_srgb = false;
+        if (bsdf.parameters.truth("use_shadowing_function", !reading_.context.is_old, sink))
+            sink.warn({FileLocation{bsdf.location().file},
+                       "normal maps have no shadowing function, by which Mitsuba's are about 1 % darker"});
+        bsdf.parameters.ignore({"flip_invalid_normals"}); // they are turned into view
         for_each_part(surface, [&](Surface& part) { part.material.normal_texture = map.ref; });
         return surface;
     }

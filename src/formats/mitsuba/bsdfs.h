@@ -49,7 +49,7 @@ private:
     /// Returns the index if it is in [least, kMostIor]. Otherwise it is left out, and its reciprocal is used for one
     /// that only a bubble can have, else `missing`.
     float usable_ior(Object& bsdf, float ior, float least, float missing);
-    void warn_of_backs(const Object& bsdf, const Surface& part);
+    bool has_black_back(const Surface& part) const;
     void warn_of_nearest(const Object& bsdf, std::string_view nearest);
     TextureValue color(Object& bsdf, const char* name, float missing) {
         return textures_.color(bsdf, name, ColorUse::Reflectance, grey(missing));

@@ -28,7 +28,13 @@ float Media::read_phase(Object& medium) {
 MediumParameters Media::read_homogeneous(Object& medium) {
     Parameters& parameters = medium.parameters;
     const auto color = [&](std::string_view name, Rgb missing) {
-        return read_color(medium, name, ColorUse::Index, missing, reading_);
+        const Parameter* const found = parameters.find(name);
+        Object* const volume = found != nullptr ? reading_.object_of(medium, *found) : nullptr;
+        if (volume == nullptr || volume->tag != "volume" || volume->type != "constvolume")
+            return read_color(medium, name, ColorUse::Index, missing, reading_);
+        const Rgb value = read_color(*volume, "value", ColorUse::Index, missing, reading_);
+        volume->parameters.leave_out_unknown(reading_.sink());
+        return value;
     };
     const auto scale = static_cast<float>(parameters.number("scale", 1, reading_.sink()));
     MediumParameters read;

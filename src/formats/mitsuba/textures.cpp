@@ -18,6 +18,20 @@ TextureValue Textures::value_of(Object& texture, ColorUse use) {
     return known->second;
 }
 
+/// Returns the texture that another one of the type scale multiplies, under whatever name; null if it has none.
+Object* Textures::scaled_by(Object& texture) {
+    if (Object* const found = child_of(texture, "texture", reading_)) return found;
+    for (const Parameter& parameter : texture.parameters.all()) {
+        if (parameter.type != ParameterType::Texture || parameter.name == "scale" || parameter.name == "value")
+            continue;
+        Object* const found = reading_.object_of(texture, parameter);
+        if (found == nullptr || found->tag != "texture") continue;
+        texture.parameters.look_up(parameter.name);
+        return found;
+    }
+    return nullptr;
+}
+
 TextureValue Textures::read(Object& texture, ColorUse use) {
     const Depth depth(reading_.depth, texture);
     Parameters& parameters = texture.parameters;
@@ -31,7 +45,7 @@ TextureValue Textures::read(Object& texture, ColorUse use) {
     } else if (texture.type == "checkerboard") {
         value = checkerboard(texture, use);
     } else if (texture.type == "scale") {
-        Object* const inner = child_of(texture, "texture", reading_);
+        Object* const inner = scaled_by(texture);
         const TextureValue factor = color(texture, "scale", ColorUse::Index, grey(1));
         value = product(inner != nullptr ? value_of(*inner, use) : color(texture, "value", use, grey(0.5f)), factor);
     } else if (texture.type == "mesh_attribute" && parameters.text("name", "", sink) == "vertex_color") {

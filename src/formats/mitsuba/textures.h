@@ -32,6 +32,7 @@ public:
 
 private:
     TextureValue read(Object& texture, ColorUse use);
+    Object* scaled_by(Object& texture);
     TextureValue bitmap(Object& texture);
     TextureValue checkerboard(Object& texture, ColorUse use);
     void read_placing(Object& texture, TextureRef& ref);

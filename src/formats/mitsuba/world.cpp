@@ -7,9 +7,11 @@
 
 #include "base/message_text.h"
 #include "formats/described/assemble.h"
+#include "formats/described/inner_boundaries.h"
 #include "formats/described/make_surface.h"
 #include "formats/described/mix_surfaces.h"
 #include "formats/described/transforms.h"
+#include "formats/mitsuba/backs.h"
 #include "formats/mitsuba/emitters.h"
 
 namespace pertev::mitsuba {
@@ -18,9 +20,11 @@ World::World(Context& context, Objects& objects) : context_(context), objects_(o
     parts_.missing_coordinates = {Vec2{0, 0}, Vec2{1, 0}, Vec2{0, 1}};
     Surface surface = make_surface(MaterialKind::Diffuse);
     surface.material.name = "default";
+    surface.is_one_sided = true;
     parts_.surfaces.push_back(surface);
     if (context.is_old) return;
     surface.material.name = "default of emitters";
+    surface.is_one_sided = false; // it is black
     surface.material.base_color = {0, 0, 0};
     parts_.surfaces.push_back(std::move(surface));
 }
@@ -102,6 +106,10 @@ void World::place(Object& shape, const DoubleTransform& world_from_group) {
             parts_.area_lights.push_back(*std::move(light));
         }
         if (bsdfs.empty() && placed.area_light && !context_.is_old) placed.surface = 1;
+        if (placed.area_light && parts_.surfaces[placed.surface].is_nothing)
+            sink.leave_out({emitter.location(), fmt::format("what lies behind {} is left out: light passes an emitter "
+                                                            "whose BSDF is null in Mitsuba, but not here",
+                                                            shape.parameters.what())});
     }
     if (!objects_in(shape, "subsurface", reading_).empty())
         sink.leave_out({shape.location(), fmt::format("subsurface of {} is left out; a medium inside of it scatters "
@@ -126,6 +134,22 @@ void World::place(Object& shape, const DoubleTransform& world_from_group) {
     parts_.placed.push_back(std::move(placed));
 }
 
+/// Leaves out the black backs of surfaces, as far as they may show.
+void World::leave_out_backs() {
+    std::vector<DoubleVec3> sensors;
+    for (Object* const sensor : view_.sensors)
+        sensors.push_back(transform_of(*sensor, "to_world", context_.sink).translation);
+    const VisibleBacks backs = find_visible_backs(parts_, sensors);
+    if (backs.count == 0) return;
+    const Placed& first = parts_.placed[backs.first];
+    const std::string others =
+        backs.count > 1 ? fmt::format(" and of {}", counted(backs.count - 1, "other shape")) : "";
+    context_.sink.leave_out({parts_.meshes[first.mesh].location,
+                             fmt::format("the black back of {}{} is left out; both faces reflect here, which only "
+                                         "those of twosided BSDFs do in Mitsuba",
+                                         shortened(first.name), others)});
+}
+
 Scene World::finish(uint64_t file_bytes) {
     most_placed_ = described::max_placed(file_bytes);
     for (const uint32_t number : std::vector<uint32_t>(objects_.top())) {
@@ -142,8 +166,10 @@ Scene World::finish(uint64_t file_bytes) {
             view_.integrator = &object;
         }
     }
-    media_.finish();
     shapes_.finish();
+    if (!context_.options.geometry_only) leave_out_backs();
+    described::add_inner_boundaries(parts_);
+    media_.finish();
     Scene scene = assemble(std::move(parts_), scene_from_world(view_, context_.sink), file_bytes,
                            "an element such as <shape type=\"sphere\"/>", context_.loader, context_.sink);
     add_view(view_, reading_, scene);

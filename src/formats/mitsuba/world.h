@@ -29,6 +29,7 @@ private:
     void add_shape(Object& shape, const DoubleTransform& world_from_group);
     void add_instance(Object& instance);
     void place(Object& shape, const DoubleTransform& world_from_group);
+    void leave_out_backs();
     float over_opacity(const Surface& surface, const Object& emitter);
 
     Context& context_;
