@@ -1,10 +1,15 @@
 #include <algorithm>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "base/message_text.h"
 #include "formats/described/make_surface.h"
 #include "formats/described/make_texture.h"
+#include "formats/files/closest_name.h"
 #include "formats/mitsuba/bsdfs.h"
 #include "formats/spectra/named_spectra.h"
 #include "math/portable_math.h"
@@ -17,6 +22,34 @@ using M = MaterialParameters;
 Rgb usable_index(Rgb index, float least) {
     const auto usable = [&](float x) { return clamp(x, least, 0x1p10f); };
     return {usable(index.r), usable(index.g), usable(index.b)};
+}
+
+struct NamedConductor {
+    std::string_view name;
+    ComplexIndex index;
+};
+constexpr NamedConductor kConductors[] = {
+#include "formats/mitsuba/conductor_table.inl"
+};
+
+/// Returns the index of a conductor of this name, or of another measured metal.
+std::optional<ComplexIndex> find_conductor(std::string_view name) {
+    const auto known = [](std::string_view with) -> std::optional<ComplexIndex> {
+        const auto* const found = std::ranges::find(kConductors, with, &NamedConductor::name);
+        return found != std::end(kConductors) ? std::optional(found->index) : std::nullopt;
+    };
+    if (const auto found = known(name)) return found;
+    const std::string plain(name.substr(0, name.find('_'))); // NAME_palik
+    for (const std::string& other : {plain, plain + "_palik"})
+        if (const auto found = known(other)) return found;
+    return find_metal_index(plain);
+}
+
+/// Returns the text that suggests a name close to an unknown one.
+std::string closest_conductor(std::string_view name) {
+    std::vector<std::string_view> known;
+    for (const NamedConductor& row : kConductors) known.push_back(row.name);
+    return did_you_mean(name, known);
 }
 
 bool is_grey(Rgb c) { return c.r == c.g && c.g == c.b; }
@@ -43,21 +76,21 @@ Surface Bsdfs::conductor(Object& bsdf) {
     if (bsdf.type == "roughconductor") read_roughness(bsdf, surface);
     const TextureValue tint = color(bsdf, "specular_reflectance", 1);
     const bool has_index = parameters.contains("eta") || parameters.contains("k");
-    std::string name = parameters.text("material", has_index ? "" : reading_.context.is_old ? "Cu" : "none", sink);
+    const char* const usual = has_index ? "" : reading_.context.is_old ? "Cu" : "none";
+    const std::string name = parameters.text("material", usual, sink);
     if (name == "none") { // reflects all
         surface.material.eta = grey(0x1p-10f);
         surface.material.k = grey(4);
         tint_metal(bsdf, tint, surface);
         return surface;
     }
-    ComplexIndex index = find_metal_index("Cu").value_or(ComplexIndex{});
+    ComplexIndex index = find_conductor("Cu").value_or(ComplexIndex{});
     if (!name.empty()) {
-        if (const std::size_t palik = name.find('_'); palik != std::string::npos) name.resize(palik);
-        const auto found = find_metal_index(name);
+        const auto found = find_conductor(name);
         if (found) index = *found;
         if (!found)
-            sink.leave_out(
-                {bsdf.location(), fmt::format("there are no data of the metal {}; copper is used", shortened(name))});
+            sink.leave_out({bsdf.location(), fmt::format("there are no data of the metal {}{}; copper is used",
+                                                         shortened(name), closest_conductor(name))});
     }
     if (has_index && !reading_.context.is_old) index = {.eta = grey(0), .k = grey(1)}; // where one is missing
     const float outside = parameters.contains("ext_eta") ? ior_of(bsdf, "ext_eta", 1) : 1.0f;
