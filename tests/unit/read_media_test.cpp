@@ -152,11 +152,12 @@ TEST_CASE("pbrt: coefficients are those of pbrt, by name before sigma and reflec
 TEST_CASE("Mitsuba: the first sensor's medium counts, and an invisible emitter has none") {
     const std::string fog = "<medium type='homogeneous' id='fog'/>", ball = "<shape type='sphere'><bsdf type='null'/>";
     Messages sensors;
-    const Scene first = read_with_media("m.xml",
-                                        "<scene version='3.0.0'>" + fog +
-                                            "<sensor type='perspective'/><sensor type='perspective'><ref name='medium' "
-                                            "id='fog'/></sensor><shape type='sphere'/></scene>",
-                                        sensors);
+    const Scene first =
+        read_with_media("m.xml",
+                        "<scene version='3.0.0'>" + fog +
+                            "<sensor type='perspective'/><sensor type='perspective'><ref name='medium' "
+                            "id='fog'/></sensor><shape type='sphere'><bsdf type='dielectric'/></shape></scene>",
+                        sensors);
     CHECK(sensors.left_out().size() == 1);
     CHECK(!first.medium.is_there());
     const Scene inside = read_with_media(
@@ -169,7 +170,7 @@ TEST_CASE("Mitsuba: the first sensor's medium counts, and an invisible emitter h
                                        "<scene version='3.0.0'>" + fog + ball +
                                            "<emitter type='area'/><ref name='interior' id='fog'/></shape></scene>",
                                        messages);
-    CHECK(messages.left_out().size() == 1);
+    CHECK(messages.left_out().size() == 2); // the medium, and what lies behind
     CHECK(!material_of(lamp, 0).is_clear_boundary);
     CHECK(material_of(lamp, 0).emission.r > 0);
 }
@@ -199,6 +200,57 @@ TEST_CASE("Mitsuba: the sensor's medium is around everything, and interior ones 
         "type='homogeneous'/></shape></scene>",
         messages);
     CHECK(messages.left_out().size() == 2); // in an opaque shape, and outside of one
+}
+
+TEST_CASE("a medium in a surface that light passes straight has a boundary of its own just inside") {
+    const std::string medium =
+        "<medium name='interior' type='homogeneous'><rgb name='sigma_t' value='1,2,3'/></medium></shape></scene>";
+    for (const char* const bsdf : {"<bsdf type='thindielectric'/>",
+                                   "<bsdf type='mask'><bsdf type='twosided'><bsdf type='diffuse'/></bsdf></bsdf>"}) {
+        const Scene scene =
+            read_with_media("m.xml", std::string("<scene version='3.0.0'><shape type='cube'>") + bsdf + medium);
+        REQUIRE(scene.instances.size() == 2);
+        CHECK(!material_of(scene, 0).medium.is_there());
+        CHECK(material_of(scene, 1).is_clear_boundary);
+        check_rates(material_of(scene, 1).medium.sigma_s, {0.75f, 1.5f, 2.25f});
+        const Mesh& inner = scene.meshes.at(scene.instances[1].mesh);
+        CHECK(inner.positions.size() == 8); // 24 vertices are joined, so that it is closed
+        const Bounds3 box = bounds_of(inner);
+        CHECK(box.hi.x < 0.9999f);
+        CHECK(box.hi.x > 0.9990f);
+        CHECK(box.lo.y > -0.9999f);
+    }
+    const std::string in_milk = "WorldBegin MakeNamedMedium \"milk\" \"string type\" \"homogeneous\" \"string preset\" "
+                                "\"Wholemilk\" MediumInterface \"milk\" \"\"\n";
+    const Scene pane = read_with_media("m.pbrt", in_milk + "Material \"thindielectric\" Shape \"sphere\"\n");
+    REQUIRE(pane.instances.size() == 2);
+    CHECK(material_of(pane, 1).is_clear_boundary);
+    // Light that pbrt's alpha lets through stays in the medium outside.
+    const Scene leaf =
+        read_with_media("m.pbrt", in_milk + "Material \"diffuse\" Shape \"sphere\" \"float alpha\" .5\n");
+    CHECK(leaf.instances.size() == 1);
+}
+
+TEST_CASE("pbrt: misspelt types of media and names of spectra have pbrt's spelling suggested") {
+    const auto says = [](const std::string& text, const char* wanted) {
+        Messages messages;
+        (void)read_with_media("m.pbrt", "WorldBegin " + text + " Shape \"sphere\"", messages);
+        REQUIRE(messages.left_out().size() == 1);
+        CHECK_MESSAGE(messages.left_out()[0].find(wanted) != std::string::npos, messages.left_out()[0]);
+    };
+    says("MakeNamedMedium \"m\" \"string type\" \"homogenous\"", "did you mean \"homogeneous\"?");
+    says("Material \"conductor\" \"spectrum eta\" \"metal-Agg-eta\"", "did you mean \"metal-Ag-eta\"?");
+    says("Material \"dielectric\" \"spectrum eta\" \"glass-FF11\"", "did you mean \"glass-F11\"?");
+}
+
+TEST_CASE("Mitsuba: the albedo of a medium may be a volume of one colour") {
+    const Scene scene = read_with_media(
+        "m.xml",
+        "<scene version='3.0.0'><shape type='cube'><bsdf type='null'/><medium name='interior' type='homogeneous'>"
+        "<float name='sigma_t' value='2'/><volume name='albedo' type='constvolume'><rgb name='value' "
+        "value='.9,.5,.25'/></volume></medium></shape></scene>");
+    check_rates(material_of(scene, 0).medium.sigma_s, {1.8f, 1, 0.5f});
+    check_rates(material_of(scene, 0).medium.sigma_a, {0.2f, 1, 1.5f});
 }
 
 TEST_CASE("glTF: volume scatter is a medium whose extinction is the volume's attenuation") {

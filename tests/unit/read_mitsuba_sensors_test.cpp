@@ -30,7 +30,7 @@ ReadSensors read_sensors(const std::string& sensors) {
     return read;
 }
 
-std::string film_of(int width, int height, const std::string& more = "") {
+std::string sensor_film(int width, int height, const std::string& more = "") {
     return fmt::format("<film type=\"hdrfilm\"><integer name=\"width\" value=\"{}\"/><integer name=\"height\" "
                        "value=\"{}\"/>{}</film>",
                        width, height, more);
@@ -44,13 +44,13 @@ std::string sensor_of(const std::string& inner, const std::string& type = "persp
                        type, first, inner);
 }
 
-std::size_t left_out_of(const std::string& inner, const std::string& says) {
+std::size_t sensor_lacks(const std::string& inner, const std::string& says) {
     const ReadSensors read = read_sensors(sensor_of("<float name=\"fov\" value=\"40\"/>" + inner));
     for (const std::string& text : read.left_out) CHECK_MESSAGE(text.find(says) != text.npos, text);
     return read.left_out.size();
 }
 
-std::string number(const char* name, double value) {
+std::string sensor_number(const char* name, double value) {
     return fmt::format("<float name=\"{}\" value=\"{}\"/>", name, value);
 }
 
@@ -58,10 +58,10 @@ std::string number(const char* name, double value) {
 
 TEST_CASE("mitsuba: each sensor suggests the size, samples and filter of its own film") {
     const ReadSensors read = read_sensors(
-        "<sensor type=\"perspective\" id=\"A\">" + film_of(32, 20, "<rfilter type=\"box\"/>") + "</sensor>" +
+        "<sensor type=\"perspective\" id=\"A\">" + sensor_film(32, 20, "<rfilter type=\"box\"/>") + "</sensor>" +
         "<sensor type=\"perspective\" id=\"B\"><sampler type=\"independent\"><integer name=\"sample_count\" "
         "value=\"9\"/></sampler>" +
-        film_of(40, 20, "<rfilter type=\"box\"/>") + "</sensor><sensor type=\"perspective\" id=\"C\"/>");
+        sensor_film(40, 20, "<rfilter type=\"box\"/>") + "</sensor><sensor type=\"perspective\" id=\"C\"/>");
     CHECK(read.left_out.empty());
     std::string suggested;
     for (const SuggestedSetting& setting : read.scene.suggested) suggested += setting.name + "=" + setting.text + " ";
@@ -70,7 +70,7 @@ TEST_CASE("mitsuba: each sensor suggests the size, samples and filter of its own
 
 TEST_CASE("mitsuba: an orthographic sensor with another scale along y is named") {
     const auto of_scale = [](const char* scale) {
-        const ReadSensors read = read_sensors(sensor_of(film_of(40, 20), "orthographic", scale));
+        const ReadSensors read = read_sensors(sensor_of(sensor_film(40, 20), "orthographic", scale));
         REQUIRE(read.scene.cameras.size() == 1);
         CHECK(read.scene.cameras[0].ortho_height == doctest::Approx(3));
         return read.left_out.size();
@@ -80,10 +80,10 @@ TEST_CASE("mitsuba: an orthographic sensor with another scale along y is named")
 }
 
 TEST_CASE("mitsuba: clipping planes are named if they cut anything that the sensor sees") {
-    CHECK(left_out_of("", "") == 0);
-    CHECK(left_out_of(number("near_clip", 4.9) + number("far_clip", 5.1), "") == 0);
-    CHECK(left_out_of(number("near_clip", 5.1), "near_clip") == 1);
-    CHECK(left_out_of(number("far_clip", 4.9), "far_clip") == 1);
+    CHECK(sensor_lacks("", "") == 0);
+    CHECK(sensor_lacks(sensor_number("near_clip", 4.9) + sensor_number("far_clip", 5.1), "") == 0);
+    CHECK(sensor_lacks(sensor_number("near_clip", 5.1), "near_clip") == 1);
+    CHECK(sensor_lacks(sensor_number("far_clip", 4.9), "far_clip") == 1);
     // A sensor a millimetre in front of the square, and one beside it, at which the square ends.
     const auto at = [](const char* place) {
         return read_sensors(

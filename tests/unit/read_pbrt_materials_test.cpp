@@ -243,6 +243,26 @@ TEST_CASE("pbrt: materials of version 3 become those of version 4") {
         pbrt_material("Material \"uber\" \"rgb Kd\" [.6 .5 .4] \"rgb Ks\" [0 0 0] \"rgb opacity\" [.7 .7 .7]");
     CHECK(blind.kind == MaterialKind::Diffuse);
     CHECK(blind.alpha == doctest::Approx(0.7));
+    const Material lacquer =
+        pbrt_material("Material \"uber\" \"rgb Kd\" [.6 .5 .4] \"rgb Ks\" [0 0 0] \"rgb Kr\" [.5 .5 .5]");
+    CHECK(lacquer.roughness == 0);
+    CHECK(lacquer.specular_weight == 0.5f);
+    CHECK(lacquer.coat_weight == 0);
+    const Material two =
+        pbrt_material("Material \"uber\" \"rgb Ks\" [.2 .2 .2] \"rgb Kr\" [.5 .5 .5] \"float roughness\" .3");
+    CHECK(two.coat_weight == 0.5f);
+    CHECK(two.coat_roughness == 0);
+    CHECK(two.coat_ior == 1.5f);
+    CHECK(two.roughness > 0);
+    const Material clear =
+        pbrt_material("Material \"uber\" \"rgb Kd\" [0 0 0] \"rgb Ks\" [0 0 0] \"rgb Kt\" [.8 .6 .4]");
+    CHECK(clear.is_solid());
+    CHECK(clear.transmission_weight == 1);
+    CHECK(clear.base_color == Rgb{0.8f, 0.6f, 0.4f});
+    const Material cloudy =
+        pbrt_material("Material \"uber\" \"rgb Kd\" [.3 .3 .3] \"rgb Ks\" [0 0 0] \"rgb Kt\" [.6 .6 .6]");
+    CHECK(cloudy.transmission_weight * cloudy.base_color.r == doctest::Approx(0.6));
+    CHECK((1 - cloudy.transmission_weight) * cloudy.base_color.r == doctest::Approx(0.3));
     const Material leaf = pbrt_material("Material \"translucent\" \"rgb Kd\" [.8 .8 .8] \"rgb Ks\" [0 0 0]");
     CHECK((1 - leaf.diffuse_transmission_weight) * leaf.base_color.r == doctest::Approx(0.4));
     CHECK(leaf.diffuse_transmission_weight * leaf.diffuse_transmission_color.r == doctest::Approx(0.4));

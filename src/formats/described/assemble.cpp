@@ -212,8 +212,10 @@ Made add_shapes(Parts& parts, const std::vector<DoubleTransform>& transforms, As
 /// Loads the images of the materials, whose heights become normals.
 void add_images(Parts& parts, const Assembly& assembly, const Made& made, uint64_t file_bytes, TextureLoader& loader,
                 Scene& scene, Sink& sink) {
+    const std::size_t requests = request_images(parts.combined, scene);
     loader.load_into(scene, file_bytes);
     ImageBudget budget(justified_bytes(4 * kFreeImageBytes, file_bytes));
+    make_combined(parts.combined, requests, budget, parts.made, scene);
     Bumps bumps(budget, parts.made, scene);
     std::vector<const Surface*> surfaces;
     for (const Surface& surface : assembly.surfaces) surfaces.push_back(&surface);

@@ -33,16 +33,16 @@ TextureImage linear_image(const TextureImage& from, ImageChange change, bool is_
     return to;
 }
 
-/// Returns an image of which each pixel is a square of many.
+/// Returns an image of which each pixel is a square of many, if it is as small as checks are.
 TextureImage enlarged(const TextureImage& from) {
-    constexpr uint32_t kTimes = 32;
     const Image& image = from.rgba_float;
+    const uint32_t times = image.width <= 2 && image.height <= 2 ? 32 : 1;
     TextureImage to;
     to.name = from.name;
-    to.rgba_float = {.width = kTimes * image.width, .height = kTimes * image.height, .channels = 4, .pixels = {}};
+    to.rgba_float = {.width = times * image.width, .height = times * image.height, .channels = 4, .pixels = {}};
     for (uint32_t y = 0; y < to.rgba_float.height; ++y) {
         for (uint32_t x = 0; x < to.rgba_float.width; ++x) {
-            const float* const pixel = image.pixels.data() + 4 * (std::size_t(y / kTimes) * image.width + x / kTimes);
+            const float* const pixel = image.pixels.data() + 4 * (std::size_t(y / times) * image.width + x / times);
             to.rgba_float.pixels.insert(to.rgba_float.pixels.end(), pixel, pixel + 4);
         }
     }

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/limits.h"
+#include "formats/described/combine_textures.h"
 #include "formats/described/surface.h"
 #include "formats/described/texture_value.h"
 #include "formats/sun_sky/sun_sky.h"
@@ -96,6 +97,7 @@ struct Parts {
     std::vector<InfiniteLight> infinite_lights;
     std::vector<PlacedLight> lights;
     std::vector<TextureImage> made;               // images that are not from files
+    std::vector<CombinedTexture> combined;        // makes the images that are still empty
     std::array<Vec2, 3> missing_coordinates = {}; // texture coordinates of each triangle of a mesh without any
 };
 

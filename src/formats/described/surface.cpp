@@ -33,6 +33,7 @@ Rgb put_image(Surface& surface, TextureSlot slot, const TextureValue& value, Cur
     image.change.grey_of = value.grey_of;
     image.change.curve = curve;
     image.change.amount = amount;
+    image.change.is_framed = value.is_framed;
     const bool keeps_factor = curve == Curve::None && is_black(value.offset) && is_unit(value.factor);
     if (!keeps_factor) {
         image.change.factor = numbers_of(value.factor);
@@ -50,24 +51,39 @@ bool has_alpha(const TextureImage& image) {
     return false;
 }
 
+uint32_t width_of(const TextureImage& image) { return max(image.rgba8.width, image.rgba_float.width); }
+uint32_t height_of(const TextureImage& image) { return max(image.rgba8.height, image.rgba_float.height); }
+
 /// Returns `from` with its colours changed, as floats.
 TextureImage changed_image(const TextureImage& from, const ImageChange& change, bool is_srgb) {
     TextureImage to;
     to.name = from.name;
     const bool is_bytes = !from.rgba8.pixels.empty();
-    const uint32_t width = is_bytes ? from.rgba8.width : from.rgba_float.width,
-                   height = is_bytes ? from.rgba8.height : from.rgba_float.height;
-    to.rgba_float = {
-        .width = width, .height = height, .channels = 4, .pixels = std::vector<float>(4 * pixel_count(from))};
-    parallel_for(pixel_count(from), 4096, [&](uint64_t i) {
-        const std::array<float, 3> texel = linear_texel(from, i, change, is_bytes && is_srgb);
+    const uint32_t frame = change.is_framed ? 1 : 0, width = width_of(from) + 2 * frame,
+                   height = height_of(from) + 2 * frame;
+    const std::size_t count = std::size_t{width} * height;
+    to.rgba_float = {.width = width, .height = height, .channels = 4, .pixels = std::vector<float>(4 * count)};
+    parallel_for(count, 4096, [&](uint64_t i) {
+        const uint64_t column = i % width, row = i / width;
+        const bool is_frame = frame > 0 && (column == 0 || row == 0 || column + 1 == width || row + 1 == height);
+        const std::size_t of = (row - frame) * width_of(from) + column - frame;
+        const std::array<float, 3> texel =
+            is_frame ? std::array<float, 3>{} : linear_texel(from, of, change, is_bytes && is_srgb);
         for (std::size_t c = 0; c < 3; ++c) {
             const float value = converted(change.curve, change.amount, change.offset[c] + change.factor[c] * texel[c]);
             to.rgba_float.pixels[4 * i + c] = max(value, 0.0f);
         }
-        to.rgba_float.pixels[4 * i + 3] = change.is_opaque ? 1.0f : texel_value(from, i, 3);
+        to.rgba_float.pixels[4 * i + 3] = change.is_opaque || is_frame ? 1.0f : texel_value(from, of, 3);
     });
     return to;
+}
+
+/// Moves the coordinates of an image into the frame around it.
+void move_into_frame(const TextureImage& framed, TextureRef& ref) {
+    const auto across = static_cast<float>(width_of(framed)), down = static_cast<float>(height_of(framed));
+    const float along_s = (across - 2) / across, along_t = (down - 2) / down;
+    ref.m00 *= along_s, ref.m01 *= along_s, ref.m02 = along_s * ref.m02 + 1 / across;
+    ref.m10 *= along_t, ref.m11 *= along_t, ref.m12 = along_t * ref.m12 + 1 / down;
 }
 
 /// Removes images without a use and renumbers the textures.
@@ -211,6 +227,7 @@ void finish_images(const std::vector<const Surface*>& surfaces, std::vector<Text
                     changed_image(scene.images[static_cast<std::size_t>(ref.image)], change, ref.is_srgb));
             }
             ref.image = number->second;
+            if (change.is_framed) move_into_frame(scene.images[static_cast<std::size_t>(ref.image)], ref);
         }
     }
     remove_unused(scene);

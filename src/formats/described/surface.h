@@ -25,6 +25,7 @@ struct ImageChange {
     bool is_alpha = false;  // the alpha channel counts if it is not 1 everywhere, else the colour
     bool decodes = false;   // numbers are sRGB-encoded; slots decode only colours
     bool is_opaque = false; // the alpha channel is 1, because it is no opacity
+    bool is_framed = false; // a frame of one black texel is added around the image
     auto operator<=>(const ImageChange&) const = default;
     bool is_identity() const { return *this == ImageChange(); }
 };

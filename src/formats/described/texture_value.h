@@ -54,6 +54,7 @@ struct TextureValue {
     float exponent = 1;                // the gamma of the stored values; applied before factor and offset
     GreyOf grey_of = GreyOf::Channels; // applied to the texels before factor and offset
     bool ignores_alpha = false;        // an opacity is that of the colour, even if the image has an alpha channel
+    bool is_framed = false;            // beyond the image, whose wrap is ClampToEdge, texels are black
 
     std::shared_ptr<const TextureMapping> mapping; // gives the coordinates of its image; null: the mesh does
     bool is_of_vertices = false;                   // the colours of a mesh's vertices, times factor

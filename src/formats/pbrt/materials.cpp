@@ -317,6 +317,9 @@ void read_bumps(const MaterialSource& source, Surface& surface) {
         if (!heights.has_image()) continue; // a constant height changes nothing
         if (std::exchange(heights.mapping, nullptr) != nullptr)
             sink.leave_out({source.parameters.location(), "the mapping of a displacement is left out; uv is used"});
+        if (std::exchange(heights.is_framed, false))
+            sink.leave_out(
+                {source.parameters.location(), "the black around a displacement is left out; its edge continues"});
         surface.heights = heights;
         surface.has_heights = true;
     }

@@ -108,26 +108,56 @@ Surface mirror(const MaterialSource& source) {
     return surface;
 }
 
-/// Reads a material uber: Kd with a reflection Ks, mirrored Kr, straight transmission Kt and an opacity, most of which
-/// a surface can have.
+/// Adds a smooth reflection Kr to a surface with another one, as a coat; coats reflect without colour.
+void set_mirror_above(const MaterialSource& source, const TextureValue& kr, Surface& surface) {
+    Material& material = surface.material;
+    material.coat_ior = material.ior;
+    set_number(surface, &M::coat_weight, &M::coat_texture, kr);
+    if (!kr.has_image() && !(kr.factor.r == kr.factor.g && kr.factor.g == kr.factor.b))
+        source.parameters.leave_out({"Kr"}, "beside Ks it has no colour; its mean is used", source.context.sink);
+}
+
+/// Adds a refraction Kt to a diffuse surface: of the light that the reflection lets through, the share of Kt in both
+/// is refracted, and the colour is that of both.
+void set_refraction(const MaterialSource& source, const TextureValue& kt, Surface& surface) {
+    Material& material = surface.material;
+    const Rgb sum = material.base_color + kt.factor;
+    if (kt.has_image() || material.base_color_texture.has_image() || surface.by_normal) {
+        source.parameters.leave_out({"Kt"}, "a refraction and a diffuse colour together have no textures",
+                                    source.context.sink);
+        return;
+    }
+    material.kind = MaterialKind::MetallicRoughness;
+    material.thin_walled = false;
+    material.transmission_weight =
+        clamp((kt.factor.r + kt.factor.g + kt.factor.b) / (sum.r + sum.g + sum.b), 0.0f, 1.0f);
+    material.base_color = {min(sum.r, 1.0f), min(sum.g, 1.0f), min(sum.b, 1.0f)};
+}
+
+/// Reads a material uber: Kd with a reflection Ks, mirrored Kr, refracted Kt and an opacity, most of which a surface
+/// can have.
 Surface uber(const MaterialSource& source) {
     Surface surface = make_surface(MaterialKind::MetallicRoughness);
     Parameters& parameters = source.parameters;
     set_index(source, 1, surface);
     read_roughness(source, 0.1, "", surface);
-    const TextureValue ks = source.textures.color(parameters, "Ks", grey(0.25f));
-    set_plastic(source, ks, surface);
-    const TextureValue kr = source.textures.color(parameters, "Kr", grey(0)),
-                       kt = source.textures.color(parameters, "Kt", grey(0));
-    if (kr.has_image() || !is_black(kr.factor))
-        parameters.leave_out({"Kr"}, "uber has one reflection, Ks", source.context.sink);
-    if (kt.has_image() || !is_black(kt.factor))
-        parameters.leave_out({"Kt"}, "uber transmits by its opacity alone", source.context.sink);
-    set_alpha(surface, source.textures.color(parameters, "opacity", grey(1)));
-    const bool has_reflection = ks.has_image() || !is_black(ks.factor);
+    const auto color = [&](const char* name, float missing) {
+        return source.textures.color(parameters, name, grey(missing));
+    };
+    const auto is_there = [](const TextureValue& value) { return value.has_image() || !is_black(value.factor); };
+    const TextureValue ks = color("Ks", 0.25f), kr = color("Kr", 0), kt = color("Kt", 0);
+    const bool is_mirror = is_there(kr) && !is_there(ks);
+    if (is_mirror) set_number(surface, &M::roughness, &M::roughness_texture, constant(grey(0)));
+    if (is_mirror) surface.material.specular_roughness_anisotropy = 0;
+    set_plastic(source, is_mirror ? kr : ks, surface);
+    if (is_there(kr) && !is_mirror) set_mirror_above(source, kr, surface);
+    if (is_there(kt)) set_refraction(source, kt, surface);
+    set_alpha(surface, color("opacity", 1));
+    const bool has_reflection = is_there(ks) || is_there(kr);
     if (surface.material.alpha == 0) surface.is_nothing = true; // light passes unchanged
-    if (has_reflection && !surface.is_nothing) warn_of_nearest(source, "a diffuse surface beneath a coat");
-    if (!has_reflection && !surface.material.base_color_texture.has_image())
+    if ((has_reflection || is_there(kt)) && !surface.is_nothing)
+        warn_of_nearest(source, "a diffuse surface beneath a coat");
+    if (!has_reflection && !is_there(kt) && !surface.material.base_color_texture.has_image())
         surface.material.kind = MaterialKind::Diffuse;
     return surface;
 }

@@ -37,6 +37,8 @@ TextureValue Textures::value_of(const std::string& type, bool is_color, const Do
         const bool is_version_3 = parameters.contains("tex1") || parameters.contains("tex2");
         const TextureValue a = part(parameters, is_version_3 ? "tex1" : "tex", is_color, 1);
         const TextureValue b = part(parameters, is_version_3 ? "tex2" : "scale", is_color, 1);
+        if (a.has_image() && b.has_image())
+            if (const auto both = described::combine_textures(a, b, std::nullopt, made_, combined_)) return *both;
         if (a.varies() && b.varies())
             context_.sink.leave_out(
                 {parameters.location(), "the second of two textures that vary is left out of a product"});
@@ -154,8 +156,7 @@ TextureValue Textures::image_map(const DoubleTransform& world_from_texture, Para
     const std::string wrap = parameters.text("wrap", "repeat", sink);
     if (wrap == "black" || wrap == "clamp") {
         value.ref.wrap_s = value.ref.wrap_t = Wrap::ClampToEdge;
-        if (wrap == "black")
-            sink.leave_out({parameters.location(), "the black around an imagemap is left out; its edge continues"});
+        value.is_framed = wrap == "black" && value.has_image();
     } else if (wrap != "repeat") {
         sink.leave_out({parameters.location(),
                         fmt::format("the wrap {} is left out; expected repeat, black or clamp", shortened(wrap))});
@@ -195,16 +196,18 @@ TextureValue Textures::checkerboard(bool is_color, const DoubleTransform& world_
             {parameters.location(), "a checkerboard of three dimensions is left out; its mean is used"});
         return mixture(even, odd, constant(grey(0.5f)), parameters);
     }
-    if (even.has_image() || odd.has_image()) {
-        context_.sink.leave_out({parameters.location(), "a checkerboard of images is left out; its mean is used"});
-        return mixture(even, odd, constant(grey(0.5f)), parameters);
-    }
     // The image covers two checks each way: half the coordinates, which begin at the lower left corner.
     TextureRef& ref = value.ref;
     ref.m00 *= 0.5f, ref.m02 *= 0.5f;
     ref.m11 *= 0.5f, ref.m12 = 0.5f + 0.5f * ref.m12;
     ref.filter = TextureFilter::Nearest;
     value.made = static_cast<int32_t>(made_.size());
+    if (even.has_image() || odd.has_image()) {
+        made_.push_back(described::checks_of(grey(0), grey(1)));
+        if (const auto all = described::combine_textures(even, odd, value, made_, combined_)) return *all;
+        context_.sink.leave_out({parameters.location(), "a checkerboard of images is left out; its mean is used"});
+        return mixture(even, odd, constant(grey(0.5f)), parameters);
+    }
     made_.push_back(checks_of(even.factor, odd.factor));
     return value;
 }
@@ -221,6 +224,8 @@ TextureValue Textures::mixture(const TextureValue& a, const TextureValue& b, con
         value.offset += a.factor;
         return value;
     }
+    if (images > 1)
+        if (const auto all = described::combine_textures(a, b, amount, made_, combined_)) return *all;
     const float share = amount.has_image() ? 0.5f : clamp(amount.factor.g, 0.0f, 1.0f);
     if (amount.has_image())
         left_out("the image that mixes two textures is left out beside theirs; they are mixed evenly");

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "formats/described/combine_textures.h"
 #include "formats/described/parameters.h"
 #include "formats/described/texture_value.h"
 #include "formats/pbrt/context.h"
@@ -21,8 +22,10 @@ namespace pertev::pbrt {
 
 class Textures {
 public:
-    /// Images that are not from files are added to `made`. The arguments must outlive this object.
-    Textures(const Context& context, std::vector<TextureImage>& made) : context_(context), made_(made) {}
+    /// Images that are not from files are added to `made`, those of several textures also to `combined`. The arguments
+    /// must outlive this object.
+    Textures(const Context& context, std::vector<TextureImage>& made, std::vector<described::CombinedTexture>& combined)
+        : context_(context), made_(made), combined_(combined) {}
 
     /// Reads a statement Texture "name" "kind" "type" with the present transform.
     void define(const std::string& name, const std::string& kind, const std::string& type,
@@ -52,6 +55,7 @@ private:
     const Context& context_;
     std::map<std::string, TextureValue, std::less<>> textures_;
     std::vector<TextureImage>& made_;
+    std::vector<described::CombinedTexture>& combined_;
     int took_by_normal_ = 0;
 };
 

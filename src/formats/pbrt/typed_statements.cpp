@@ -171,7 +171,7 @@ void Statements::area_light(Tokens& tokens, const FileLocation& location) {
 void Statements::shape(Tokens& tokens, const FileLocation& location) {
     const std::string type = take_text(tokens, location);
     Parameters parameters = take_parameters(tokens, location, fmt::format("the shape {}", shortened(type)), "shape");
-    world_.add_shape(type, parameters);
+    world_.add_shape(type, parameters, bytes_);
 }
 
 } // namespace pertev::pbrt

@@ -1,5 +1,7 @@
 #include "formats/pbrt/world.h"
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <utility>
 
@@ -8,6 +10,7 @@
 #include "base/message_text.h"
 #include "formats/described/assemble.h"
 #include "formats/described/described_medium.h"
+#include "formats/described/inner_boundaries.h"
 #include "formats/described/light_tables.h"
 #include "formats/described/transforms.h"
 #include "formats/described/usable_values.h"
@@ -22,7 +25,7 @@ std::string alpha_key(const std::string& texture) { return "texture " + texture;
 } // namespace
 
 World::World(const Context& context)
-    : context_(context), textures_(context, parts_.made), shapes_(context, parts_.meshes) {
+    : context_(context), textures_(context, parts_.made, parts_.combined), shapes_(context, parts_.meshes) {
     parts_.missing_coordinates = {Vec2{0, 1}, Vec2{1, 1}, Vec2{1, 0}}; // (0, 0), (1, 0) and (1, 1) with v upwards
     Surface grey_surface = make_surface(MaterialKind::Diffuse);
     grey_surface.material.name = "default";
@@ -132,7 +135,11 @@ std::optional<uint32_t> World::alpha_of(Parameters& parameters) {
     return number->second;
 }
 
-void World::add_shape(const std::string& type, Parameters& parameters) {
+void World::add_shape(const std::string& type, Parameters& parameters, uint64_t file_bytes) {
+    const uint64_t most = described::max_placed(file_bytes);
+    if (++shape_count_ > most)
+        throw Error(ErrorCode::OverLimit, parameters.location(),
+                    fmt::format("more than {} shapes, the limit for files of this size", most));
     Placed placed;
     if (parts_.surfaces[state.surface].is_nothing && state.area_light)
         context_.sink.leave_out(
@@ -170,8 +177,12 @@ void World::make_named_medium(const std::string& name, Parameters& parameters) {
     medium.is_defined = true;
     const std::string type = parameters.text("type", "", context_.sink);
     if (type != "homogeneous") {
-        throw parameters.error(
-            fmt::format("the medium {} of the type {} is left out; it is a vacuum", shortened(name), shortened(type)));
+        constexpr std::array<std::string_view, 6> kTypes = {"homogeneous", "cloud",   "nanovdb",
+                                                            "uniformgrid", "rgbgrid", "heterogeneous"};
+        const bool is_known = std::ranges::find(kTypes, type) != kTypes.end();
+        throw parameters.error(fmt::format("the medium {} of the type {} is left out; it is a vacuum{}",
+                                           shortened(name), shortened(type),
+                                           is_known ? "" : did_you_mean(type, kTypes)));
     }
     parts_.media[medium.index] = read_medium(parameters, context_);
     parameters.leave_out_unknown(context_.sink);
@@ -196,7 +207,8 @@ bool World::fill(Placed& placed) {
     if (context_.options.geometry_only || (state.inside == state.outside && surface.is_nothing))
         return !surface.is_nothing;
     // MediumInterface holds for later shapes too, so that opaque ones often have a medium inside without meaning it.
-    if (described::is_entered(surface)) placed.medium = medium_index(state.inside);
+    if (described::is_entered(surface) || described::is_passed_straight(surface))
+        placed.medium = medium_index(state.inside);
     if (state.inside != state.outside) placed.outside = medium_index(state.outside);
     return true;
 }
@@ -249,6 +261,7 @@ void World::add_instance(const std::string& name, const FileLocation& from, uint
 
 Scene World::finish(uint64_t file_bytes) {
     shapes_.finish();
+    described::add_inner_boundaries(parts_);
     finish_media();
     Scene scene = assemble(std::move(parts_), scene_from_world(view), file_bytes,
                            "a statement such as Shape \"sphere\"", context_.loader, context_.sink);

@@ -54,7 +54,7 @@ public:
     void set_camera_medium() { around_ = state.outside; }
     void set_area_light(const std::string& type, Parameters& parameters);
     void add_light(const std::string& type, Parameters& parameters);
-    void add_shape(const std::string& type, Parameters& parameters);
+    void add_shape(const std::string& type, Parameters& parameters, uint64_t file_bytes);
     void begin_object(const std::string& name, const FileLocation& location);
     void end_object(const FileLocation& location);
     void add_instance(const std::string& name, const FileLocation& location, uint64_t file_bytes);
@@ -89,6 +89,7 @@ private:
     std::map<std::string, NamedMedium, std::less<>> media_;
     std::string around_;
     bool has_motion_ = false; // a motion has been reported
+    uint64_t shape_count_ = 0;
 };
 
 } // namespace pertev::pbrt
