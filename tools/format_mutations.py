@@ -263,4 +263,5 @@ MUTATIONS = [
     ("pbrt: checks of images are exchanged", "unit/combine_textures", ("src/formats/pbrt/textures.cpp", "described::checks_of(grey(0), grey(1))", "described::checks_of(grey(1), grey(0))")),
     ("pbrt: combined images repeat as the first does", "unit/combine_textures", ("src/formats/described/combine_textures.cpp", "for (int parts = 1; parts <= 16; ++parts) {", "for (int parts = 1; parts <= 1; ++parts) {")),
     ("pbrt: uber's mirror is as rough as its other reflection", "unit/read_pbrt_materials", ("src/formats/pbrt/materials_version_3.cpp", "if (is_mirror) set_number(surface,", "if (false) set_number(surface,")),
+    ("pbrt: beyond an image its edge continues where black is stated", "unit/combine_textures", ("src/formats/pbrt/textures.cpp", "value.is_framed = wrap == \"black\" && value.has_image();", "value.is_framed = false;")),
 ]
