@@ -480,21 +480,21 @@ TEST_CASE("mitsuba: unknown attributes, types and names are left out with the ne
     CHECK(about(sensor("<film type=\"specfilm\"/><sampler type=\"halton\"/>")) == 0);
 }
 
-TEST_CASE("mitsuba: every metal of its list that has published indices is known by its short name") {
+TEST_CASE("mitsuba: every conductor of its list is known by its short name") {
     const auto metal_of = [](const std::string& name) {
         return in_scene("<shape type=\"rectangle\"><bsdf type=\"conductor\"><string name=\"material\" value=\"" + name +
                         "\"/></bsdf></shape>");
     };
-    for (const char* const name : {"a-C", "Ag", "Al", "AlAs", "AlSb", "Au",   "Be",       "Cr",      "CsI",      "Cu",
-                                   "Hg",  "Ir", "K",  "Li",   "MgO",  "Mo",   "Na_palik", "Nb",      "Ni_palik", "Rh",
-                                   "SiC", "Ta", "Te", "TiC",  "TiN",  "TiO2", "VC",       "V_palik", "VN",       "W"}) {
+    for (const char* const name :
+         {"a-C",  "Ag",   "Al", "AlAs", "AlSb", "Au",  "Be",   "Cr",       "CsI",     "Cu",       "Cu2O", "CuO", "d-C",
+          "Hg",   "HgTe", "Ir", "K",    "Li",   "MgO", "Mo",   "Na_palik", "Nb",      "Ni_palik", "Rh",   "Se",  "SiC",
+          "SnTe", "Ta",   "Te", "ThF4", "TiC",  "TiN", "TiO2", "VC",       "V_palik", "VN",       "W"}) {
         CAPTURE(name);
         const Scene scene = load_mitsuba(metal_of(name));
         const Material& metal = scene.materials.at(scene.instances.at(0).material);
-        CHECK(metal.kind == MaterialKind::Conductor);
-        CHECK(metal.eta.g > 0.01f);
+        CHECK((metal.kind == MaterialKind::Conductor && metal.eta.g > 0.01f));
     }
     Messages messages;
-    (void)load_mitsuba(metal_of("HgTe"), messages);
+    (void)load_mitsuba(metal_of("HgTa"), messages);
     CHECK(messages.left_out().size() == 1);
 }
