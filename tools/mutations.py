@@ -35,7 +35,7 @@ MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + lobe_mutatio
     ("light passes the backs that the camera looks through", "unit/hidden_back",
      ("src/device_scene/find_hits.h", "!from_camera || scene.any_hidden_back == 0", "scene.any_hidden_back == 0")),
     ("the wavefront draws other numbers", "consistency/one_picture",
-     ("src/integrators/path/path_stages.h", "job.settings, begun.pixel, begun.sample)", "job.settings, begun.pixel, begun.sample + 1)")),
+     ("src/integrators/path/path_stages.h", "job.film.frame.aims, begun.pixel, begun.sample)", "job.film.frame.aims, begun.pixel, begun.sample + 1)")),
     ("pictures of a batch draw the numbers of the tall picture", "consistency/camera_batch",
      ("src/render/batch_view.h", "return {at.pixel, sample, seeds[at.picture]};", "return {tall_pixel, sample, seeds[at.picture]};")),
     ("a batch takes the axis of its first camera", "consistency/camera_batch",

@@ -263,7 +263,7 @@ MUTATIONS = [
     ("other devices get the scene of a history too late", "consistency/frame_history",
      ("src/session/frame_sequence.cpp", "shared->take_scene(*this, settings, sink);", "static_cast<void>(settings), static_cast<void>(sink);")),
     ("a history that does not fit is taken", "consistency/frame_history",
-     ("src/session/frame_sequence.cpp", "    if (!is_alike || (", "    if ((!is_alike && was.arrays.empty()) || (")),
+     ("src/session/frame_sequence.cpp", "    if (!is_alike || !are_of_scene()) {", "    if ((!is_alike && was.arrays.empty()) || !are_of_scene()) {")),
     ("reservoirs of a history are forgotten", "consistency/frame_history robust/cli_real_time",
      ("src/session/frame_sequence.cpp", "restir_->begin_after(light, {path.sampler, was.number, path.seed, path.mip_maps == MipMaps::On});",
       "restir_->begin_after(light, {path.sampler, was.number + 1, path.seed});")),

@@ -124,7 +124,7 @@ private:
         const Rgb kept = frames_of_light > 0 ? own : around.mean, tolerance = deviations * around.deviation;
         const float brightest = steady.may_change ? kept.r : max(kept.r, memory.emitted),
                     luma = within(old.r, brightest, around.mean.r, tolerance.r);
-        // What an emitter's luma has beyond the colours around may have any hue.
+        // Light of an emitter beyond the colours around may have any hue.
         const float beyond = steady.may_change ? 0.0f : 2.0f * max(luma - around.mean.r - tolerance.r, 0.0f);
         const Rgb limited = {luma, within(old.g, kept.g, around.mean.g, tolerance.g + beyond),
                              within(old.b, kept.b, around.mean.b, tolerance.b + beyond)};
