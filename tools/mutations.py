@@ -168,7 +168,7 @@ MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + lobe_mutatio
     ("sheen as bright as its formula", "statistical/bsdf_energy",
      ("src/shading/lobes/sheen_lobe.h", "transmittance.light * f / max(1.0f, max(albedo_o, albedo_i))", "transmittance.light * f")),
     ("a coat that mirrors about the surface's own normal", "statistical/bsdf_energy",
-     ("src/shading/lobes/coat_lobe.h", "return is_bent() ? draw_bent(", "return false && is_bent() ? draw_bent(")),
+     ("src/shading/lobes/coat_lobe.h", "const bool bent = is_bent();", "const bool bent = false && is_bent();")),
     ("a bent coat that is brighter one way than the other", "statistical/particle_scatter",
      ("src/shading/lobes/coat_lobe.h", "return min(1.0f, coat_o / cos_o) *", "return 1.0f + 0.0f * min(1.0f, coat_o / cos_o) *")),
     ("an index of refraction read from a thin wall", "statistical/particle_scatter",

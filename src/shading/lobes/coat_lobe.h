@@ -92,8 +92,26 @@ struct CoatLobe {
         return value;
     }
 
+    /// Draws in the frame of the coat's normal, mirrored to the upper side together with wo.
     HD_CALL LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
-        return is_bent() ? draw_bent(wo, beneath, u_lobe, u) : draw_straight(wo, beneath, u_lobe, u);
+        const bool bent = is_bent();
+        Frame frame;
+        Vec3 o = {wo.x, wo.y, abs(wo.z)};
+        if (bent) {
+            frame = make_frame(normal);
+            o = frame.to_local(o);
+        }
+        LobeDraw draw = draw_above({o.x, o.y, bent ? min(abs(o.z), 1.0f) : o.z}, beneath, u_lobe, u);
+        if (draw.is_beneath || !(draw.sample.pdf > 0)) return draw;
+        Vec3& wi = draw.sample.wi;
+        if (bent) {
+            const float cos_i = wi.z;
+            wi = normalize(frame.to_world(wi));
+            if (!(o.z > 0 && cos_i > 0 && wi.z > 0)) return {};
+            draw.sample.weight = factor_of_bend(abs(wo.z), o.z, wi.z, cos_i) * draw.sample.weight;
+        }
+        wi.z = copysign(wi.z, wo.z);
+        return draw;
     }
 
 private:
@@ -119,24 +137,13 @@ private:
             .base_color = {}, .metallic = 0, .widths = widths, .f0 = grey(strength * f0), .f90 = strength, .film = {}};
     }
 
-    HD LobeDraw draw_straight(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
+    /// Draws about the coat's normal, for wo.z >= 0.
+    HD LobeDraw draw_above(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
         if (is_stretched()) return stretched().draw(wo, beneath, u_lobe, u);
         const SchlickLobe lobe = interface();
         const SchlickLobe::Average average = lobe.make_average();
-        const LayerShares shares = make_shares(average, lobe.albedo_at(abs(wo.z), average), beneath);
-        return lobe.draw_by(shares, strength * fresnel_schlick(abs(wo.z), grey(f0)), wo, u_lobe, u);
-    }
-    /// Draws in the frame of the coat's normal, mirrored to the upper side together with wo.
-    HD LobeDraw draw_bent(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
-        const Frame frame = make_frame(normal);
-        const Vec3 o = frame.to_local({wo.x, wo.y, abs(wo.z)});
-        LobeDraw draw = draw_straight({o.x, o.y, min(abs(o.z), 1.0f)}, beneath, u_lobe, u);
-        if (draw.is_beneath || !(draw.sample.pdf > 0)) return draw;
-        const Vec3 wi = normalize(frame.to_world(draw.sample.wi));
-        if (!(o.z > 0 && draw.sample.wi.z > 0 && wi.z > 0)) return {};
-        draw.sample.weight = factor_of_bend(abs(wo.z), o.z, wi.z, draw.sample.wi.z) * draw.sample.weight;
-        draw.sample.wi = {wi.x, wi.y, copysign(wi.z, wo.z)};
-        return draw;
+        const LayerShares shares = make_shares(average, lobe.albedo_at(wo.z, average), beneath);
+        return lobe.draw_by(shares, strength * fresnel_schlick(wo.z, grey(f0)), wo, u_lobe, u);
     }
     HD LayerShares make_shares(const SchlickLobe::Average& average, const SchlickLobe::Albedo& at_o,
                                float beneath) const {

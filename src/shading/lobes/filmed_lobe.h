@@ -85,7 +85,9 @@ private:
     HD bool has_film() const { return film.weight > 0; }
     HD bool is_tinted() const { return !(tint == Rgb{1, 1, 1}) && !has_film(); }
     HD Rgb with_film(Rgb plain, float cosine, Rgb base_f0, float most) const {
-        if (!has_film()) return plain;
+        return has_film() ? beneath_film(plain, cosine, base_f0, most) : plain;
+    }
+    HD_CALL Rgb beneath_film(Rgb plain, float cosine, Rgb base_f0, float most) const {
         return plain + film.weight * (most * film_reflectance(cosine, film, ior_from_f0(base_f0)) - plain);
     }
     HD Rgb of_dielectric(float cosine) const {
