@@ -22,6 +22,7 @@ MUTATIONS = [
     ("fuzz whose base gets all light", "statistical/openpbr_layers", ("src/shading/lobes/fuzz_lobe.h", "transmittance.pass(strength * o.albedo, strength * i.albedo, p_beneath);", "transmittance.pass(0, 0, p_beneath);")),
     ("fuzz of the roughness beside", "statistical/openpbr_layers", ("src/shading/lobes/fuzz_table.h", "row.fraction);", "0.0f * row.fraction);")),
     ("reflections drawn half as often as they reflect", "statistical/bsdf_weights", ("src/shading/lobes/schlick_lobe.h", "max(once / (once + more + beneath), T(0.0625f))", "0.5f * once / (once + more + beneath)")),
+    ("what metal loses drawn by the grazing lobe alone", "statistical/bsdf_weights", ("src/shading/lobes/grazing_lobe.h", "return 0.2f + 0.5f * alpha;", "return 1e-6f * alpha;")),
     ("fuzz that is always Charlie's", "statistical/openpbr_layers", ("src/device_scene/make_bsdf.h", "if (material.fuzz_model == FuzzModel::Zeltner)", "if (false)")),
     ("a coat that absorbs on one way alone", "statistical/openpbr_layers statistical/bsdf_energy", ("src/shading/lobes/coat_lobe.h", "if (!is_solid || wi.z > 0) length", "if (false) length")),
     ("a coat that light crosses without refraction", "statistical/openpbr_layers", ("src/shading/lobes/coat_absorption.h", "* (inv_ior * inv_ior)", "* 1.0f")),

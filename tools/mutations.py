@@ -192,7 +192,7 @@ MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + lobe_mutatio
     ("a particle weighted by the shading normal alone", "statistical/particle_scatter",
      ("src/render/particle_scatter.h", "return abs(from.direction.z) * there /", "return 1.0f + 0.0f * abs(from.direction.z) * there /")),
     ("the density of a metal forgets its second lobe", "statistical/bsdf_sampling",
-     ("src/shading/lobes/conductor_lobe.h", "(1.0f - lost_o) * once.pdf + lost_o * pdf_grazing_lobe(i.z, alpha)", "once.pdf")),
+     ("src/shading/lobes/conductor_lobe.h", "(1.0f - lost_o) * once.pdf + lost_o * pdf_metal_lost(i.z, alpha)", "once.pdf")),
     ("a digit of a coefficient of the sine", "unit/portable_math", ("src/math/portable_trig.h", "0x1.1106c6p-7f", "0x1.1106d6p-7f")),
     ("lights and bounces that both draw one, without weights", "statistical/restir",
      ("src/restir/initial_candidates.h", "drawn * light.pdf + (light.is_delta ? 0.0f : value.pdf)", "drawn * light.pdf")),

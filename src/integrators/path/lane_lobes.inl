@@ -99,7 +99,7 @@ private:
         Table<3> drawn = {};
         for (; lanes != 0; lanes &= lanes - 1) {
             const auto lane = static_cast<uint32_t>(__builtin_ctz(lanes));
-            drawn.set(0, lane, sample_grazing_lobe(reflection_.alpha[lane], Vec2{u.x[lane], u.y[lane]}));
+            drawn.set(0, lane, sample_metal_lost(reflection_.alpha[lane], Vec2{u.x[lane], u.y[lane]}));
         }
         return drawn.vec3(0);
     }

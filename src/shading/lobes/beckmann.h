@@ -58,20 +58,17 @@ HD inline float slope_length(float z, float across) {
     return z + (across * kInvSqrtPi - z * scaled_erfc(a)) * e;
 }
 
-/// Samples a direction for the light that one bounce loses, which is most at cosines of 1 to 2 widths; u in [0, 1)^2.
-HD inline Vec3 sample_lost_lobe(float alpha, Vec2 u) {
+/// Samples the squared cosine of a direction for the light that one bounce loses, which is most at cosines of 1 to 2
+/// widths; u in [0, 1).
+HD inline float sample_lost_lobe(float alpha, float u) {
     const float wide = 0.5f * alpha * alpha, k = 0.25f / (alpha * alpha);
     float z2;
-    if (u.y < wide) {
-        z2 = sqrt(u.y / wide);
+    if (u < wide) {
+        z2 = sqrt(u / wide);
     } else {
-        z2 = -log(1.0f - (u.y - wide) / (1.0f - wide) * (1.0f - exp(-k))) / k;
+        z2 = -log(1.0f - (u - wide) / (1.0f - wide) * (1.0f - exp(-k))) / k;
     }
-    z2 = clamp(z2, 0.0f, 1.0f);
-    const float radius = sqrt(1.0f - z2);
-    float sin_phi, cos_phi;
-    sin_cos_2pi(u.x, sin_phi, cos_phi);
-    return {radius * cos_phi, radius * sin_phi, sqrt(z2)};
+    return clamp(z2, 0.0f, 1.0f);
 }
 /// Density of sample_lost_lobe() at `cosine` in [0, 1], 1/sr.
 HD inline float pdf_lost_lobe(float cosine, float alpha) {

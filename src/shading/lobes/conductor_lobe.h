@@ -2,8 +2,7 @@
 
 // Metal: exact Fresnel reflectance of a complex index, GGX microfacets, perfectly smooth below kSmoothAlpha. A
 // reciprocal second lobe compensates the loss of single scattering (energy_tables.h). Both sides reflect equally.
-// draw() samples a visible normal with the probability of the share that single scattering returns, else the grazing
-// lobe.
+// draw() samples a visible normal with the probability of the share that single scattering returns, else that lobe.
 
 #include "base/host_device.h"
 #include "shading/lobes/energy_tables.h"
@@ -38,13 +37,13 @@ struct ConductorLobe {
         const Rgb more = multiple_scattering_tint(fresnel_conductor_average(eta, k), lost);
         return {transmittance.light *
                     (once.f * fresnel_conductor(once.cos_h, eta, k) + (cosine * lost_o * lost_i / lost) * more),
-                transmittance.reach * ((1.0f - lost_o) * once.pdf + lost_o * pdf_grazing_lobe(i.z, alpha))};
+                transmittance.reach * ((1.0f - lost_o) * once.pdf + lost_o * pdf_metal_lost(i.z, alpha))};
     }
     HD LobeDraw draw(Vec3 wo, float u_lobe, Vec2 u) const {
         if (is_smooth()) return draw_mirror(wo, fresnel_conductor(abs(wo.z), eta, k), 1);
         Vec3 wi;
         if (u_lobe < metal_lost(abs(wo.z), alpha)) {
-            wi = sample_grazing_lobe(alpha, u);
+            wi = sample_metal_lost(alpha, u);
         } else {
             const Vec3 o = {wo.x, wo.y, abs(wo.z)};
             wi = normalize(reflect(o, sample_ggx_visible_normal(o, alpha, u)));

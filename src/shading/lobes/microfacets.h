@@ -110,11 +110,21 @@ struct Microfacets {
     /// Samples a direction for that light, u in [0, 1)^2, and the density at a cosine, 1/sr.
     HD_CALL Vec3 sample_lost_lobe(Vec2 u, bool is_glass = false) const {
         const float width = lost_lobe_width(is_glass), own = share_of_own_lobe(is_glass);
-        if (!(own < 1) || u.x < own) return beckmann::sample_lost_lobe(width, {u.x / own, u.y});
-        return sample_grazing_lobe(width, {min((u.x - own) / (1.0f - own), 0x1.fffffep-1f), u.y});
+        float z2;
+        if (!is_beckmann && !is_glass) {
+            z2 = sample_metal_lost(width, u.y);
+        } else if (!(own < 1) || u.x < own) {
+            z2 = beckmann::sample_lost_lobe(width, u.y);
+            u.x = u.x / own;
+        } else {
+            z2 = sample_grazing_lobe(width, u.y);
+            u.x = min((u.x - own) / (1.0f - own), 0x1.fffffep-1f);
+        }
+        return direction_of_squared_cosine(z2, u.x);
     }
     HD_CALL float pdf_lost_lobe(float cosine, bool is_glass = false) const {
         const float width = lost_lobe_width(is_glass), own = share_of_own_lobe(is_glass);
+        if (!is_beckmann && !is_glass) return pdf_metal_lost(cosine, width);
         float pdf = 0;
         if (own > 0) pdf += own * beckmann::pdf_lost_lobe(cosine, width);
         if (own < 1) pdf += (1.0f - own) * pdf_grazing_lobe(cosine, width);
@@ -128,8 +138,8 @@ private:
         if (!is_glass) return x == y ? 1.0f : 0.7f;
         return energy_width() > 0.5f ? 0.0f : 0.5f;
     }
-    /// Beckmann's metal loses light up to the angles of the wider width, which has to be drawn there.
-    HD float lost_lobe_width(bool is_glass) const { return is_beckmann && !is_glass ? widest() : energy_width(); }
+    /// Metal loses light up to the angles of the wider width, which has to be drawn there.
+    HD float lost_lobe_width(bool is_glass) const { return is_glass ? energy_width() : widest(); }
     /// Found by comparison over widths and angles: most across the tangent, where facets that face the wide way
     /// reflect.
     HD float schlick_excess(Vec3 w) const {

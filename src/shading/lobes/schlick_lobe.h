@@ -105,7 +105,7 @@ struct SchlickLobeOf {
                (cosine * at_o.lost * at_i.lost / average.lost) * average.more;
     }
     HD T pdf_of(const GgxReflectionOf<T>& once, T cos_i, T p_specular, T p_more) const {
-        return p_specular * once.pdf + p_more * pdf_grazing_lobe(cos_i, alpha);
+        return p_specular * once.pdf + p_more * pdf_metal_lost(cos_i, alpha);
     }
 
     /// Samples the lobe by given shares. `fresnel` is the mirror's reflectance seen from wo.
@@ -113,7 +113,7 @@ struct SchlickLobeOf {
         Vec3 wi;
         if (u_lobe < shares.beneath) return draw_beneath(u_lobe, shares.beneath);
         if (u_lobe - shares.beneath < shares.more) {
-            wi = sample_grazing_lobe(alpha, u);
+            wi = sample_metal_lost(alpha, u);
         } else if (is_smooth()) {
             return draw_mirror(wo, (1.0f / shares.specular) * fresnel, shares.specular);
         } else {
