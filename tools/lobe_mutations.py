@@ -23,6 +23,8 @@ MUTATIONS = [
     ("fuzz of the roughness beside", "statistical/openpbr_layers", ("src/shading/lobes/fuzz_table.h", "row.fraction);", "0.0f * row.fraction);")),
     ("reflections drawn half as often as they reflect", "statistical/bsdf_weights", ("src/shading/lobes/schlick_lobe.h", "max(once / (once + more + beneath), T(0.0625f))", "0.5f * once / (once + more + beneath)")),
     ("what metal loses drawn by the grazing lobe alone", "statistical/bsdf_weights", ("src/shading/lobes/grazing_lobe.h", "return 0.2f + 0.5f * alpha;", "return 1e-6f * alpha;")),
+    ("sheen drawn by the band alone where it is seen from above", "statistical/bsdf_weights", ("src/shading/lobes/sheen_lobe.h", "+ z * (0.06f + 1.94f * z));", "+ 0.0f * z);")),
+    ("the band of sheen is as likely as if no angle cut it", "statistical/bsdf_sampling", ("src/shading/lobes/sheen_lobe.h", "(width * beckmann::erf(inv_spread))", "width")),
     ("fuzz that is always Charlie's", "statistical/openpbr_layers", ("src/device_scene/make_bsdf.h", "if (material.fuzz_model == FuzzModel::Zeltner)", "if (false)")),
     ("a coat that absorbs on one way alone", "statistical/openpbr_layers statistical/bsdf_energy", ("src/shading/lobes/coat_lobe.h", "if (!is_solid || wi.z > 0) length", "if (false) length")),
     ("a coat that light crosses without refraction", "statistical/openpbr_layers", ("src/shading/lobes/coat_absorption.h", "* (inv_ior * inv_ior)", "* 1.0f")),

@@ -231,6 +231,24 @@ TEST_CASE("every bsdf samples directions by its pdf, with the weight eval over p
     }
 }
 
+TEST_CASE("sheen of all widths samples directions by its pdf, seen from the horizon to the zenith") {
+    const auto samples = static_cast<uint32_t>(effort(40'000, 4'000'000));
+    const std::vector<double> horizon = {0};
+    uint32_t seed = 500;
+    for (const float roughness : {0.1f, 0.35f, 1.0f})
+        for (const float cosine : {1.0f, 0.4f, -0.08f, 0.004f}) {
+            const Vec3 wo = direction_at(cosine);
+            const SamplingReport report =
+                test_sampling(make_sheen(Bsdf{}, grey(1), roughness), wo, chart_for(wo, 1), horizon, samples, ++seed);
+            INFO("roughness " << roughness << ", cos(wo) " << cosine << ": " << report.chi_square.describe());
+            CHECK(report.chi_square.passes(12));
+            CHECK(report.mean_deviations < 5);
+            CHECK(report.weight_error < 1e-4);
+            CHECK(report.pdf_error < 1e-4);
+            CHECK(report.unreachable == 0);
+        }
+}
+
 namespace {
 
 /// A diffuse BSDF whose pdf lacks the cosine.
