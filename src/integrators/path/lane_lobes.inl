@@ -66,7 +66,7 @@ public:
     /// Sets wo of the following calls.
     void see_from(Vec3s wo) {
         at_o_ = reflection_.albedo_at(abs(wo.z), average_);
-        shares_ = reflection_.make_shares(average_, at_o_, beneath_);
+        shares_ = reflection_.make_shares(average_, at_o_, beneath_, abs(wo.z));
     }
     Values evaluate(Vec3s wo, Vec3s wi) const {
         const Vec3s o = {wo.x, wo.y, abs(wo.z)}, i = {wi.x, wi.y, abs(wi.z)};

@@ -80,7 +80,7 @@ struct CoatLobe {
         const SchlickLobe lobe = interface();
         const SchlickLobe::Average average = lobe.make_average();
         const SchlickLobe::Albedo at_o = lobe.albedo_at(o.z, average), at_i = lobe.albedo_at(i.z, average);
-        const LayerShares shares = make_shares(average, at_o, beneath);
+        const LayerShares shares = make_shares(average, at_o, beneath, o.z);
         BsdfValue value;
         if (!lobe.is_smooth() && reflects) {
             const GgxReflection once = evaluate_ggx_reflection(o, i, alpha);
@@ -142,14 +142,14 @@ private:
         if (is_stretched()) return stretched().draw(wo, beneath, u_lobe, u);
         const SchlickLobe lobe = interface();
         const SchlickLobe::Average average = lobe.make_average();
-        const LayerShares shares = make_shares(average, lobe.albedo_at(wo.z, average), beneath);
+        const LayerShares shares = make_shares(average, lobe.albedo_at(wo.z, average), beneath, wo.z);
         return lobe.draw_by(shares, strength * fresnel_schlick(wo.z, grey(f0)), wo, u_lobe, u);
     }
-    HD LayerShares make_shares(const SchlickLobe::Average& average, const SchlickLobe::Albedo& at_o,
-                               float beneath) const {
+    HD LayerShares make_shares(const SchlickLobe::Average& average, const SchlickLobe::Albedo& at_o, float beneath,
+                               float cos_o) const {
         const float once = strength * ((1.0f - at_o.lost) * (f0 + (1.0f - f0) * at_o.schlick));
         const float more = strength * (at_o.lost * average.coat_more);
-        return layer_shares(once, more, beneath * (1.0f - strength * at_o.coat));
+        return layer_shares(once, more, beneath * (1.0f - strength * at_o.coat), raise_of_shares(cos_o, alpha, f0));
     }
 };
 

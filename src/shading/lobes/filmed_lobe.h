@@ -53,7 +53,7 @@ struct FilmedLobe {
         const Vec3 o = widths.turned({wo.x, wo.y, abs(wo.z)}), i = widths.turned({wi.x, wi.y, abs(wi.z)});
         const Average average = make_average();
         const Albedo at_o = albedo_at(o), at_i = albedo_at(i);
-        const LayerShares shares = make_shares(average, at_o, beneath);
+        const LayerShares shares = make_shares(average, at_o, beneath, o.z);
         BsdfValue value;
         if (!is_smooth() && wo.z * wi.z > 0) {
             const GgxReflection once = widths.evaluate_reflection(o, i);
@@ -66,7 +66,8 @@ struct FilmedLobe {
     }
     HD_CALL LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
         const Average average = make_average();
-        const LayerShares shares = make_shares(average, albedo_at(widths.turned({wo.x, wo.y, abs(wo.z)})), beneath);
+        const LayerShares shares =
+            make_shares(average, albedo_at(widths.turned({wo.x, wo.y, abs(wo.z)})), beneath, abs(wo.z));
         Vec3 wi;
         if (u_lobe < shares.beneath) return draw_beneath(u_lobe, shares.beneath);
         if (u_lobe - shares.beneath < shares.more) {
@@ -141,9 +142,10 @@ private:
         a.strength = max_component(mixed + w * (grey(lerp(f90, 1.0f, metallic)) - mixed));
         return a;
     }
-    HD LayerShares make_shares(const Average& average, const Albedo& at_o, float beneath) const {
-        return layer_shares((1.0f - at_o.lost) * at_o.strength, at_o.lost * max_component(average.more),
-                            beneath * (1.0f - at_o.coat));
+    HD LayerShares make_shares(const Average& average, const Albedo& at_o, float beneath, float cos_o) const {
+        return layer_shares(
+            (1.0f - at_o.lost) * at_o.strength, at_o.lost * max_component(average.more), beneath * (1.0f - at_o.coat),
+            raise_of_shares(cos_o, widths.energy_width(), max_component(lerp(f0, base_color, metallic))));
     }
 };
 

@@ -24,16 +24,25 @@ struct LayerSharesOf {
 };
 using LayerShares = LayerSharesOf<float>;
 /// Computes the shares from the energies seen from wo. Visible normals keep at least 1/16, against fireflies where
-/// the energy seen from wo does not predict the value at wi.
+/// the energy seen from wo does not predict the value at wi, and their share s is raised by `raise` s (1 - s)^2.
 template <class T>
-HD inline LayerSharesOf<T> layer_shares(T once, T more, T beneath) {
+HD inline LayerSharesOf<T> layer_shares(T once, T more, T beneath, T raise) {
     const MaskOf<T> has_rest = more + beneath > 0;
     LayerSharesOf<T> shares = {};
-    shares.specular = select(has_rest, max(once / (once + more + beneath), T(0.0625f)), T(1.0f));
+    const T mean = once / (once + more + beneath);
+    shares.specular = select(has_rest, max(mean + raise * (mean * square(1.0f - mean)), T(0.0625f)), T(1.0f));
     const T rest = select(has_rest, (1.0f - shares.specular) / (more + beneath), T(0.0f));
     shares.more = rest * more;
     shares.beneath = rest * beneath;
     return shares;
+}
+
+/// Returns the `raise` of a lobe seen at `cosine`, in [0, 2.1]. Seen at a grazing angle, a rough dielectric reflects a
+/// tenth of the light on the mean, but nearly all where it leaves at a grazing angle too: drawn by the mean, it has
+/// weights of 6.
+template <class T>
+HD inline T raise_of_shares(T cosine, T alpha, T f0) {
+    return 2.1f * schlick_weight(cosine) * (alpha * (2.0f - alpha)) * (1.0f - f0);
 }
 
 /// `T` is float, or several floats at once on the host (math/lanes.h), for lobes that are not smooth.
@@ -76,7 +85,7 @@ struct SchlickLobeOf {
         const Vec3 o = {wo.x, wo.y, abs(wo.z)}, i = {wi.x, wi.y, abs(wi.z)};
         const Average average = make_average();
         const Albedo at_o = albedo_at(o.z, average), at_i = albedo_at(i.z, average);
-        const LayerShares shares = make_shares(average, at_o, beneath);
+        const LayerShares shares = make_shares(average, at_o, beneath, o.z);
         BsdfValue value;
         if (!is_smooth()) {
             const GgxReflection once = evaluate_ggx_reflection(o, i, alpha);
@@ -92,7 +101,7 @@ struct SchlickLobeOf {
 
     HD LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
         const Average average = make_average();
-        const LayerShares shares = make_shares(average, albedo_at(abs(wo.z), average), beneath);
+        const LayerShares shares = make_shares(average, albedo_at(abs(wo.z), average), beneath, abs(wo.z));
         return draw_by(shares, fresnel_schlick(abs(wo.z), mixed_f0()), wo, u_lobe, u);
     }
 
@@ -142,11 +151,11 @@ struct SchlickLobeOf {
         a.coat = min((1.0f - a.lost) * (f0 + (1.0f - f0) * a.schlick) + a.lost * average.coat_more, T(1.0f));
         return a;
     }
-    HD LayerSharesOf<T> make_shares(const Average& average, const Albedo& at_o, T beneath) const {
+    HD LayerSharesOf<T> make_shares(const Average& average, const Albedo& at_o, T beneath, T cos_o) const {
         const T specular_f0 = max_component(mixed_f0());
         const T once = (1.0f - at_o.lost) * (specular_f0 + (1.0f - specular_f0) * at_o.schlick);
         const T more = at_o.lost * max_component(average.more);
-        return layer_shares<T>(once, more, beneath * (1.0f - at_o.coat));
+        return layer_shares<T>(once, more, beneath * (1.0f - at_o.coat), raise_of_shares(cos_o, alpha, specular_f0));
     }
 };
 

@@ -42,7 +42,7 @@ struct SpecularLobe {
         const Vec3 o = {wo.x, wo.y, abs(wo.z)}, i = {wi.x, wi.y, abs(wi.z)};
         const Average average = make_average();
         const Albedo at_o = albedo_at(o.z, average), at_i = albedo_at(i.z, average);
-        const LayerShares shares = make_shares(average, at_o, beneath);
+        const LayerShares shares = make_shares(average, at_o, beneath, o.z);
         BsdfValue value;
         if (!is_smooth() && wo.z * wi.z > 0) {
             const GgxReflection once = evaluate_ggx_reflection(o, i, alpha);
@@ -58,7 +58,7 @@ struct SpecularLobe {
     }
     HD_CALL LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
         const Average average = make_average();
-        const LayerShares shares = make_shares(average, albedo_at(abs(wo.z), average), beneath);
+        const LayerShares shares = make_shares(average, albedo_at(abs(wo.z), average), beneath, abs(wo.z));
         return sampler().draw_by(shares, once_at(schlick_weight(abs(wo.z))), wo, u_lobe, u);
     }
 
@@ -88,9 +88,10 @@ private:
         a.coat = min((1.0f - a.lost) * (most + (f90 - most) * a.schlick) + a.lost * average.coat_more, 1.0f);
         return a;
     }
-    HD LayerShares make_shares(const Average& average, const Albedo& at_o, float beneath) const {
+    HD LayerShares make_shares(const Average& average, const Albedo& at_o, float beneath, float cos_o) const {
         const float once = (1.0f - at_o.lost) * max_component(once_at(at_o.schlick));
-        return layer_shares(once, at_o.lost * max_component(average.more), beneath * (1.0f - at_o.coat));
+        return layer_shares(once, at_o.lost * max_component(average.more), beneath * (1.0f - at_o.coat),
+                            raise_of_shares(cos_o, alpha, max_component(mixed_f0())));
     }
 };
 
