@@ -167,8 +167,12 @@ private:
         const float rest = (1.0f - weight) * beneath;
         return rest > 0 ? rest / (rest + weight) : 0.0f;
     }
-    /// A film changes the share that is reflected and thus loses less than the tables have: half of it is compensated.
-    HD float lost_at(Vec3 w, float eta) const { return (1.0f - 0.5f * film.weight) * widths.glass_loss(w, eta); }
+    /// A film changes the share that is reflected, and thus less is lost than the tables have. Through one on a bubble
+    /// (an index below 1) nothing is lost from within at some angles, and from outside 0.42 of what they have or more.
+    HD float lost_at(Vec3 w, float eta) const {
+        const float not_lost = ior > 1 ? 0.5f : eta < 1 ? 0.35f : 1.0f;
+        return (1.0f - not_lost * film.weight) * widths.glass_loss(w, eta);
+    }
     HD float share_of_lost(float eta) const {
         return DielectricLobe::transmitted_share(eta, widths.average_glass_loss(eta),
                                                  widths.average_glass_loss(1.0f / eta));
