@@ -243,6 +243,10 @@ TEST_CASE(
     // A layer leaves at most 1 - max(A(o), A(i)) to what is beneath, with its albedo A (LayerTransmittance::pass). Of
     // the light that white metal scatters from o to where the coat's albedo is larger, the difference is lost, though a
     // real coat would return it to the metal again. Neither the coat's tables nor its own light lose more than 0.3 %.
+    // No function of both albedos alone can leave more: a base that scatters o to one direction and that one to o would
+    // gain light from one of them. On metal alone a lobe l(o) l(i) / l_avg with what is lost, l, could return it. By
+    // measurement l is strength (1 - f0) times a function of both widths and the cosine, within 3 % up to a coat of
+    // roughness 0.2 (at an index of 2 and at half the strength). A coat does not know the width beneath it.
     double least = 1;
     for (const float roughness : {0.05f, 0.2f, 0.5f, 1.0f}) {
         const SchlickLobe coat = {grey(0), 0, roughness * roughness, f0_from_ior(1.5f)};
