@@ -55,10 +55,7 @@ Image Session::motion() { return pixels_in(frames_.motion(camera(), settings()),
 
 RenderResult Session::result() {
     RenderResult result = film_.result();
-    if ((settings().aovs & kAovMotion) != 0) {
-        const AovGroup& group = aov_group(kAovMotion);
-        result.layers.push_back({group.layer, channel_names(group), motion()});
-    }
+    if ((settings().aovs & kAovMotion) != 0) result.layers.push_back(motion_layer(motion()));
     return result;
 }
 

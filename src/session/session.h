@@ -25,8 +25,8 @@
 #include "base/sink.h"
 #include "device_scene/ray_queue.h"
 #include "session/film_render.h"
-#include "session/frame_sequence.h"
 #include "session/meter_exposure.h"
+#include "session/moving_frames.h"
 
 namespace pertev {
 
@@ -91,7 +91,7 @@ public:
                       Sink& sink = nobody()) {
         return frames_.render(number, camera(), settings(), reconstruction, restir, sink);
     }
-    FrameSequence& frames() { return frames_; }
+    MovingFrames& frames() { return frames_; }
     Reconstruction& frame() { return frames_.reconstruction(); }
     RenderResult frame_result() { return frames_.result(camera(), settings()); }
     /// Makes the present scene and camera the reference of motion vectors (kAovMotion).
@@ -113,7 +113,7 @@ private:
     DeviceScene scene_;
     PictureRenderer pictures_;
     FilmRender film_;
-    FrameSequence frames_;
+    MovingFrames frames_;
     Meter meter_;
     std::optional<Camera> previous_camera_;
     uint64_t cuts_ = 0;

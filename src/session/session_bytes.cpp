@@ -155,6 +155,8 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
     if (settings.aovs != 0)
         film.emplace(queue, width, height, settings.aovs, std::vector<std::string>(), settings.layers_at);
     if (has_centres(settings)) centres.reserve(uint64_t(width) * height, scene.motions != nullptr);
+    std::optional<MotionVectorMemory> motion;
+    if ((settings.aovs & kAovMotion) != 0) motion.emplace(queue, width, height);
     return tracing.bytes();
 }
 

@@ -157,7 +157,7 @@ std::vector<Setting> frame_settings() {
         row("real_time", "Frames", "", FIELD(real_time),
             "Frames are those of the viewer in motion: one sample per pixel, reconstructed with earlier frames.",
             Of{integrators_that(makes_frames)}, Needs{"frames turntable"},
-            Excludes{"denoise!=none transparent shutter lpe false_color=illuminance aov=motion"}));
+            Excludes{"denoise!=none transparent shutter lpe false_color=illuminance"}));
     return rows;
 }
 

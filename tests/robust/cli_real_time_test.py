@@ -299,13 +299,29 @@ class RealTime(CliTest):
         self.succeed("render", "m.gltf", "-o", "x.exr", *SMALL, "--spp", "1")
         self.assertNotIn("pertev.reconstruction", self.info("x.exr"))
 
+    def test_motion_is_that_of_ordinary_frames_and_none_after_a_cut(self):
+        plain = self.succeed("render", "m.gltf", "-o", "p-#.exr", *SMALL, "--spp", "1", "--frames", "0-4", "--fps", "4",
+                             "--aov", "motion", "--json").events("frame")
+        none = self.succeed("render", "m.gltf", "-o", "n.exr", *SMALL, "--spp", "1", "--aov", "motion", "--json").events("done")[0]
+        expected = [none["layers_hash"], *(event["layers_hash"] for event in plain[1:])]
+        self.assertEqual(len(set(expected)), 5)
+        for number, flags in enumerate([[], ["--resolution-scale", "0.5", "--device", "cpu,cpu"], ["--restir", "gi", "--no-reconstruction"]]):
+            line = ["--frames", "0-4", "--fps", "4", "--aov", "motion", *flags]
+            said = self.render(f"x{number}", *line, "--cuts", "3", output="f-#.exr").events("frame")
+            self.assertEqual([event["layers_hash"] for event in said], [*expected[:3], expected[0], expected[4]])
+            without = self.render("y", *line[:4], *flags, "--cuts", "3").events("frame")
+            self.assertEqual([event["hash"] for event in said], [event["hash"] for event in without])
+        kept = ["--fps", "4", "--aov", "motion", "--checkpoint", "c.pvf", "--continue"]
+        self.render("z", "--frames", "0-2", *kept, output="f-#.exr")
+        said = self.render("z", "--frames", "0-4", *kept, output="f-#.exr").events("frame")
+        self.assertEqual([event.get("layers_hash") for event in said], [None] * 3 + expected[3:])
+
     def test_settings_that_real_time_frames_do_not_support_are_refused(self):
         motion = "--frames 0-1 --real-time"
         for line, says in [("--real-time", "--frames or --turntable"), ("--real-time --time 1", "--frames"),
                            (f"{motion} --spp 4", "--spp 4: a frame with --real-time has one sample"),
                            (f"{motion} --spp 64", "--spp 64"), (f"{motion} --denoise svgf", "--denoise svgf"),
                            (f"{motion} --transparent", "--transparent"), (f"{motion} --lpe d=LDE", "--lpe"),
-                           (f"{motion} --aov motion", "--aov motion"),
                            (f"{motion} --false-color illuminance --false-color-range 1,2", "--false-color illuminance"),
                            (f"{motion} --time-limit 1", "--time-limit"), ("--frames 0-1 --passes 5", "--passes: needs --real-time"),
                            ("--frames 0-1 --restir gi", "--restir: needs --real-time"),

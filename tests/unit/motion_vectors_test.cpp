@@ -161,3 +161,59 @@ TEST_CASE("memory of motion vectors equals its prediction, and their bytes are t
     Queue cuda = test::make_cuda_queue();
     CHECK(motion_on(cuda, PathBody::Wavefront) == expected);
 }
+
+TEST_CASE("motion of a real-time frame is that since the frame before, at any resolution of light, and 0 after a cut") {
+    Messages messages;
+    Queue queue = test::requested_queue();
+    const Camera camera = camera_of_ball();
+    const RenderSettings settings = motion_settings();
+    Scene scene = test::make_furnace_scene(0.5f);
+    scene.instances.push_back(scene.instances[0]); // another instance, so that the mesh has its own BLAS
+    scene.instances[1].world_from_local = make_translation({0, 0, -40});
+    PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const float scale = pixels_a_metre(make_camera_view(camera, 64, 48));
+    for (const float resolution : {1.0f, 0.5f}) {
+        CAPTURE(resolution);
+        const ReconstructionSettings reconstruction = {.resolution_scale = resolution};
+        Session session(queue, prepared, camera, settings);
+        float x = 0;
+        const auto move_by = [&](float metres) {
+            x += metres;
+            scene.instances[0].world_from_local = make_translation({x, 0, 0});
+            SceneUpdate update;
+            update.moved_instances = {0};
+            prepared = update_scene(prepared, scene, update, messages);
+            session.update_scene(prepared, parts_of(update));
+        };
+        uint32_t number = 0;
+        const auto ball = [&] {
+            REQUIRE(session.render_frame(number++, reconstruction));
+            const RenderResult result = session.frame_result();
+            REQUIRE(result.layers.size() == 1);
+            CHECK(result.layers[0].name == "motion");
+            const Image& motion = result.layers[0].image;
+            REQUIRE((motion.width == 64 && motion.height == 48 && motion.channels == 2));
+            return at(motion, 32, 24).x;
+        };
+        CHECK(ball() == 0);
+        move_by(0.1f);
+        CHECK(ball() == doctest::Approx(0.1f * scale).epsilon(0.02));
+        CHECK(std::abs(ball()) < 1e-3f); // it rests
+        move_by(0.05f);
+        move_by(0.05f); // two steps between frames
+        CHECK(ball() == doctest::Approx(0.1f * scale).epsilon(0.05));
+        Camera aside = camera;
+        aside.world_from_camera.translation.x += 0.1f;
+        session.set_camera(aside);
+        CHECK(ball() == doctest::Approx(-0.1f * scale).epsilon(0.05));
+        session.cut();
+        CHECK(ball() == 0);
+        session.set_camera(camera);
+        session.cut();
+        move_by(-0.2f);
+        CHECK(ball() == 0);
+        move_by(0.1f);
+        CHECK(ball() == doctest::Approx(0.1f * scale).epsilon(0.05));
+        move_by(-0.1f);
+    }
+}

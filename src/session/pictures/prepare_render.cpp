@@ -338,7 +338,7 @@ void report_motion(const PictureOptions& options, const MovingScene& moving, Sin
                    fmt::format("the scene is shown at rest; `time` shows it at a time of its {} (0 to {:.4g} s)",
                                counted(moving.scene().animations.size(), "animation"), moving.end_s())});
     }
-    if (std::ranges::count(options.aovs, "motion") > 0 && options.frames.empty()) {
+    if (std::ranges::count(options.aovs, "motion") > 0 && options.frames.empty() && options.turntable == 0) {
         sink.note({"aov", "motion", "there is no motion without `frames`, because there is no earlier frame"});
     }
     const bool camera_moves = !options.camera_path.empty() || options.turntable > 0;

@@ -70,7 +70,8 @@ void seek_frame(uint32_t frame, const FrameCamera& camera, MovingScene& moving, 
 RenderedFrame render_frame(uint32_t frame, const SequenceOfFrames& frames, Sink& sink) {
     auto& [camera, moving, record, session] = frames;
     const Stopwatch update;
-    if ((record.settings.aovs & kAovMotion) != 0 && camera.list.empty())
+    // In real time the frame before has just been rendered.
+    if ((record.settings.aovs & kAovMotion) != 0 && camera.list.empty() && !record.frame)
         show_frame_before(frame, camera, moving, session, sink);
     seek_frame(frame, camera, moving, session, record, sink);
     const double update_s = update.seconds();
