@@ -68,7 +68,7 @@ std::optional<PythonResult> PythonSession::next(Sink& sink) {
     if (!cut_) session.cut();
     if (!cut_ || session.history().cuts != cuts_) cut_ = frame_; // other settings may have ended the history
     cuts_ = session.history().cuts;
-    if (record_->frame) record_->frame->cut = *cut_;
+    if (record_->in_sequence) record_->in_sequence->cut = *cut_;
     const FrameCamera camera = {*setup.camera, setup.sequence};
     RenderedFrame rendered = render_frame(*frame_, {camera, *setup.moving, *record_, session}, sink);
     if (rendered.result.samples < record_->settings.samples) {

@@ -123,7 +123,7 @@ pertev_launches(denoise/oidn/oidn_stages.cu
     ShowColor)
 pertev_launches(denoise/picture_denoiser_stages.cu
   denoise/compose_samples.h denoise/estimate_variance.h denoise/even_pass.h denoise/finish_sums.h denoise/gather_mirrors.h
-  render/pixel_window.h
+  denoise/mix_history.h render/pixel_window.h
   STAGES BeginSums
     FinishSums
     BeginMirrors
@@ -139,6 +139,10 @@ pertev_launches(denoise/picture_denoiser_stages.cu
     InWindow<GatherLight>
     SmoothGuide
     EstimateVariance
+    ReprojectHistory
+    CompareHistory
+    AverageDifference
+    MixHistory
     ComposeSamples)
 pertev_launches(denoise/reconstruction_stages.cu
   denoise/accumulate_signals.h denoise/anti_alias.h denoise/clamp_history.h denoise/compose_picture.h

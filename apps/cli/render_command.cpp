@@ -209,7 +209,7 @@ int render(RenderFlags& flags) {
     std::optional<SessionOnDevices> opened(std::in_place, ready->queues, ready->prepared(), record.camera.camera,
                                            settings, shared);
     Session& session = opened->session();
-    const bool keeps_film = !flags.checkpoint.empty() && !flags.real_time;
+    const bool keeps_film = !flags.checkpoint.empty() && !flags.real_time && !flags.keeps_history();
     if (writes_tone_mapped(flags.outputs) || keeps_film || writes_films(flags.outputs)) {
         record.display = choose_display(flags, session, reporter);
         report_display(*record.display, is_metered(flags), reporter);

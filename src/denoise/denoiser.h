@@ -16,8 +16,11 @@
 #include "render/camera_view.h"
 #include "render/noisy_frame.h"
 #include "render/pixel_window.h"
+#include "render/reproject.h"
 
 namespace pertev {
+
+class PictureHistory; // denoise/picture_history.h
 
 class Denoiser {
 public:
@@ -39,6 +42,11 @@ public:
     /// below 1.
     virtual void guide_mirrors(const NoisyFrame&) {}
     virtual void add_mirrors(const NoisyFrame&, const SceneView&) {}
+    /// Returns the light of earlier frames, if the denoiser has that of frames of a sequence; else null.
+    virtual PictureHistory* history() { return nullptr; }
+    /// Lets the picture, whose begin() got `centres`, go on with the history that there is; else the caller cuts that.
+    /// `before` is where the scene was in the frame that left it.
+    virtual void follow(const NoisyFrame&, const SceneView&, const PreviousScene&) { PERTEV_CHECK(false); }
     /// Adds the next sample of each pixel, with light; `sample` is its number.
     virtual void add(const NoisyFrame& frame, const SceneView& scene, uint32_t sample) = 0;
     /// Returns what the denoiser has gathered of the window's pixels; other pixels are missing.

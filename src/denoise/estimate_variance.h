@@ -15,12 +15,26 @@ struct EstimateVariance {
     PictureGuide guide; // after smoothing
     PictureSums sums;
     SignalsView out;
+    Vec2* of_sample; // variance of a sample of both signals, kUnknown or more if unknown; null: not wanted
     uint32_t width, height;
     bool has_gloss;
+
+    // Factors of the variance: few bright samples contribute much of the light, and many pixels have none of them.
+    // Highlights are narrower than a filter.
+    static constexpr float kOfDiffuse = 1.5f, kOfGloss = 0.4f;
+    static constexpr float kUnknown = 1e6f; // lets the filter average as much as guides allow
+
+    /// Fraction of the spread of a pixel's samples that is noise: if its normals vary, its light does so too.
+    HD static float noise_share(Float4 normals) {
+        if (!(normals.w > 0)) return 1;
+        const float spread = 1.0f - length(vec3_of(normals)) / normals.w; // 0.02: about ten degrees
+        return square(max(1.0f - 10.0f * spread, 0.0f));
+    }
 
     HD void operator()(uint32_t pixel) const {
         const uint32_t object = guide.object[pixel];
         out.diffuse[pixel] = out.gloss[pixel] = {0, 0, 0, 0};
+        if (of_sample != nullptr) of_sample[pixel] = {0, 0};
         if (object == kNoHit) return;
         const int w = static_cast<int>(width), h = static_cast<int>(height);
         const int x = static_cast<int>(pixel % width), y = static_cast<int>(pixel / width);
@@ -43,24 +57,14 @@ struct EstimateVariance {
         const float share = noise_share(sums.all_normal(pixel));
         out.diffuse[pixel] = of_diffuse.mean(diffuse_of(pixel), kOfDiffuse * share);
         if (has_gloss) out.gloss[pixel] = of_gloss.mean(gloss_of(pixel), kOfGloss * share);
+        if (of_sample == nullptr) return;
+        of_sample[pixel] = {of_diffuse.variance(diffuse_of(pixel)), has_gloss ? of_gloss.variance(gloss_of(pixel)) : 0};
     }
 
 private:
     static constexpr int kReach = 2;       // pixels
     static constexpr float kFreedoms = 12; // degrees of freedom with which the variance of samples within pixels is
                                            // known
-    // Factors of the variance: few bright samples contribute much of the light, and many pixels have none of them.
-    // Highlights are narrower than a filter.
-    static constexpr float kOfDiffuse = 1.5f, kOfGloss = 0.4f;
-    static constexpr float kUnknown = 1e6f; // lets the filter average as much as guides allow
-
-    /// Fraction of the spread of a pixel's samples that is noise: if its normals vary, its light does so too.
-    HD static float noise_share(Float4 normals) {
-        if (!(normals.w > 0)) return 1;
-        const float spread = 1.0f - length(vec3_of(normals)) / normals.w; // 0.02: about ten degrees
-        return square(max(1.0f - 10.0f * spread, 0.0f));
-    }
-
     /// Sums for one pixel and one signal.
     struct Sums {
         Rgb light, divisors;
@@ -103,17 +107,20 @@ private:
             if (freedoms >= kFreedoms) return within / freedoms;
             return pixels >= 6 && all.samples > 1 ? all.spread() / (all.samples - 1) : kUnknown;
         }
+        /// Variance of a sample of a pixel. If its own samples spread more than those of its neighbours, it is that,
+        /// because otherwise a single bright one would remain.
+        HD float variance(const Sums& own) const {
+            const float of_all = variance_of_sample();
+            return own.samples > 1 ? max(of_all, own.spread() / (own.samples - 1)) : of_all;
+        }
         /// Mean and variance of a pixel. A pixel without samples on its guide's surface, or where that is black, takes
-        /// the mean of its neighbours. If its own samples spread more than those of its neighbours, it uses its own
-        /// spread, because otherwise a single bright one would remain.
+        /// the mean of its neighbours.
         HD Float4 mean(const Sums& own, float scale) const {
             const Sums& known = own.is_known() ? own : all;
             if (!known.is_known()) return {0, 0, 0, kUnknownSignal};
             const float inv = 1.0f / known.samples;
             const Rgb light = rgb_of(diffuse_signal(inv * known.light, inv * known.divisors));
-            const float variance =
-                own.samples > 1 ? max(variance_of_sample(), own.spread() / (own.samples - 1)) : variance_of_sample();
-            return with_w(light, (scale * variance) / max(own.samples, 1.0f));
+            return with_w(light, (scale * variance(own)) / max(own.samples, 1.0f));
         }
     };
 };

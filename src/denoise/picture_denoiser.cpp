@@ -56,6 +56,11 @@ PictureDenoiser::PictureDenoiser(Queue& queue, uint32_t width, uint32_t height)
     guide_.object = objects_.data();
 }
 
+PictureDenoiser::PictureDenoiser(Queue& queue, uint32_t width, uint32_t height, uint32_t samples, uint32_t frames)
+    : PictureDenoiser(queue, width, height) {
+    history_.emplace(queue, width, height, samples, frames);
+}
+
 void PictureDenoiser::begin(const NoisyFrame& centres, const CameraView& camera, const PixelWindow& window) {
     PERTEV_CHECK(centres.width() == width_ && centres.height() == height_);
     launch(*queue_, "begin_sums", width_ * height_, BeginSums{centres.view(), guide_, sums_});
@@ -75,6 +80,10 @@ void PictureDenoiser::forget_samples() {
 SampledSurfaces PictureDenoiser::surfaces_of(const NoisyFrame& frame, const SceneView& scene) const {
     PERTEV_CHECK(frame.width() == width_ && frame.height() == height_);
     return {frame.view(), guide_, sums_, scene.instances, scene.meshes, camera_, width_, height_};
+}
+
+void PictureDenoiser::follow(const NoisyFrame& centres, const SceneView& scene, const PreviousScene& before) {
+    history_.value().follow(centres, guide_, camera_, scene, before);
 }
 
 void PictureDenoiser::add_features(const NoisyFrame& frame, const SceneView& scene) {
@@ -175,7 +184,10 @@ Image PictureDenoiser::apply(Image picture) {
     const PictureGuide smooth = {smooth_, guide_.albedo, guide_.object};
     launch(*queue_, "finish_sums", pixels, FinishSums{sums_, mirrors_if_gloss()});
     launch(*queue_, "smooth_guide", pixels, SmoothGuide{guide_, sums_, smooth_, packed_});
-    launch(*queue_, "estimate_variance", pixels, EstimateVariance{smooth, sums_, from, width_, height_, has_gloss_});
+    launch(
+        *queue_, "estimate_variance", pixels,
+        EstimateVariance{smooth, sums_, from, history_ ? history_->of_sample() : nullptr, width_, height_, has_gloss_});
+    if (history_) history_->mix(sums_, from, packed_, to, has_gloss_, camera_);
     for (int pass = 0; pass < kPicturePasses; ++pass) {
         launch(*queue_, "even_pass", pixels,
                EvenPass{packed_, from, to, camera_, width_, height_, kSteps[pass], kPictureTolerance, has_gloss_});

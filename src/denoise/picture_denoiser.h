@@ -8,6 +8,7 @@
 
 #include "denoise/denoiser.h"
 #include "denoise/gather_samples.h"
+#include "denoise/picture_history.h"
 #include "device/buffer.h"
 
 namespace pertev {
@@ -17,6 +18,8 @@ public:
     static constexpr uint32_t kFeatures = 16;
 
     PictureDenoiser(Queue& queue, uint32_t width, uint32_t height);
+    /// Makes a denoiser of frames, each with `samples` samples, whose light is a mean over at most `frames` of them.
+    PictureDenoiser(Queue& queue, uint32_t width, uint32_t height, uint32_t samples, uint32_t frames);
 
     void begin(const NoisyFrame& centres, const CameraView& camera, const PixelWindow& window) override;
     /// Returns kFeatures: samples 0 to kFeatures - 1 are required before any light, so that edges and textures are
@@ -27,6 +30,8 @@ public:
     void guide_mirrors(const NoisyFrame& frame) override;
     void add_mirrors(const NoisyFrame& frame, const SceneView& scene) override;
     void add(const NoisyFrame& frame, const SceneView& scene, uint32_t sample) override;
+    PictureHistory* history() override { return history_ ? &*history_ : nullptr; }
+    void follow(const NoisyFrame& centres, const SceneView& scene, const PreviousScene& before) override;
     void forget_samples() override;
     DenoiserState state() const override;
     void restore(const DenoiserState& state) override;
@@ -62,6 +67,7 @@ private:
     SignalsView from_ = {}, to_ = {}, mirrored_ = {};
     MirrorSums mirrors_ = {};
     MirrorChainView chain_ = {};
+    std::optional<PictureHistory> history_; // none: pictures are independent
 
     MirrorSums mirrors_if_gloss() const { return has_gloss_ ? mirrors_ : MirrorSums{}; }
 };

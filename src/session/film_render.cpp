@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/stopwatch.h"
+#include "denoise/picture_history.h"
 #include "render/hidden_back_share.h"
 #include "render/sample_layers/variance_target.h"
 #include "session/check_integrator.h"
@@ -44,7 +45,8 @@ FilmRender::FilmRender(PictureRenderer& pictures, const Camera& camera, const Re
 bool FilmRender::set_camera(const Camera& camera) {
     if (camera == camera_) return false;
     camera_ = camera;
-    restart_for_scene();
+    hidden_back_share_.reset();
+    begin_picture();
     return true;
 }
 
@@ -59,6 +61,12 @@ bool FilmRender::set_settings(const RenderSettings& settings) {
 }
 
 void FilmRender::restart() {
+    if (PictureHistory* const history = steps_->history()) history->cut();
+    scene_has_moved_ = false;
+    begin_picture();
+}
+
+void FilmRender::begin_picture() {
     number_ = pictures_.new_number();
     forget_samples();
 }
@@ -70,8 +78,30 @@ void FilmRender::forget_samples() {
 }
 
 void FilmRender::restart_for_scene() {
+    if (has_history() && !scene_has_moved_) {
+        pictures_.scene().keep_instances();
+        scene_has_moved_ = true;
+    }
     hidden_back_share_.reset();
+    begin_picture();
+}
+
+/// Returns where the scene was in the picture that left a history.
+PreviousScene FilmRender::scene_before() {
+    const DeviceScene& scene = pictures_.scene();
+    return scene_has_moved_ ? scene.before() : PreviousScene{scene.view().instances, scene.view().meshes};
+}
+
+FrameHistory FilmRender::history() const {
+    FrameHistory history;
+    history.camera = camera_;
+    history.arrays = steps_->history()->save();
+    return history;
+}
+
+void FilmRender::restore(const FrameHistory& history) {
     restart();
+    steps_->restore_history(history.camera, settings_, history.arrays);
 }
 
 void FilmRender::set_targets(AddTargets add) {
@@ -141,7 +171,9 @@ uint32_t FilmRender::render_shared(SampleRange range, Sink& sink) {
     SharedSamples added;
     try {
         const AddTargets add = targets_of_films();
-        const SharedPicture picture = {pictures_, camera_, settings_, add, number_, films_first};
+        RenderSettings of_devices = settings_;
+        of_devices.history = 0; // that is the caller's, who denoises
+        const SharedPicture picture = {pictures_, camera_, of_devices, add, number_, films_first};
         added = pictures_.sharing()->render(picture, range, before, into, sink);
     } catch (...) {
         forget_samples();
@@ -180,7 +212,8 @@ uint32_t FilmRender::render_passes(SampleRange range, Sink& sink) {
     const Stopwatch since_call;
     const uint32_t before = samples().count(), count = range.count();
     Film& whole = film();
-    if (has_steps() && before == 0 && !steps_->begin(camera_, settings_, on_cpu() ? &sink : nullptr)) return 0;
+    if (has_steps() && before == 0 && !steps_->begin(camera_, settings_, on_cpu() ? &sink : nullptr, scene_before()))
+        return 0;
     Integrator& integrator = pictures_.begin(camera_, settings_, has_steps() ? 1 : count, number_);
     if (before == 0) pictures_.find_centres(camera_, settings_, whole);
     const Stopwatch watch;
@@ -289,17 +322,28 @@ std::optional<Image> FilmRender::denoised() {
     if (pictures_.sharing() == nullptr) {
         Image image = steps_->apply(picture());
         denoiser_ = steps_->names();
+        scene_has_moved_ = false; // the history is that of this picture
         return image;
     }
+    DenoisedPicture denoised = denoise_shared();
+    denoiser_ = std::move(denoised.denoiser);
+    return std::move(denoised.image);
+}
+
+/// Denoises what several devices have gathered.
+DenoisedPicture FilmRender::denoise_shared() {
     const DenoiserTarget* const gathered = denoiser_target(film());
     PERTEV_CHECK(gathered != nullptr);
     DenoiserState state(gathered->byte_count() / sizeof(uint32_t));
     gathered->read(0, std::as_writable_bytes(std::span(state)));
-    const auto denoise_on = [&](Queue& queue) {
-        DenoisedPicture denoised = denoise(queue, settings_, picture(), state);
-        denoiser_ = std::move(denoised.denoiser);
-        return std::move(denoised.image);
-    };
+    if (settings_.has_history()) {
+        if (begun_number_ != number_) steps_->begin_restored(camera_, settings_, scene_before());
+        begun_number_ = number_;
+        steps_->restore(state);
+        scene_has_moved_ = false;
+        return {steps_->apply(picture()), steps_->names()};
+    }
+    const auto denoise_on = [&](Queue& queue) { return denoise(queue, settings_, picture(), state); };
     try {
         return denoise_on(pictures_.queue());
     } catch (const Error& error) {

@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 
+#include "session/frame_history.h"
 #include "session/post_steps.h"
 
 namespace pertev {
@@ -22,9 +23,12 @@ public:
     /// another picture.
     bool set_camera(const Camera& camera);
     bool set_settings(const RenderSettings& settings);
-    /// Restarts the film; restart_for_scene() is for a scene that has changed.
+    /// Restarts the film, and discards the history of frames (RenderSettings::has_history). restart_for_scene() keeps
+    /// that; it must be called before the scene changes.
     void restart();
     void restart_for_scene();
+    /// Restarts the film for the next frame of a sequence, even if nothing has changed, and keeps the history.
+    void begin_picture();
 
     /// Restarts with a new film. `add` is called for it, and for each film that replaces it or takes a pass for it.
     void set_targets(AddTargets add);
@@ -70,6 +74,14 @@ public:
     /// Returns picture, denoised picture, layers, ids and stats together.
     RenderResult result() { return {stats(), picture(), denoised(), denoiser(), layers(), film().ids()}; }
 
+    /// Returns whether the next denoised picture goes on after an earlier one: the last whose denoised() was called.
+    bool has_history() const { return steps_->history() != nullptr; }
+    /// Returns that history, which there is. Throws Error(DeviceFault).
+    FrameHistory history() const;
+    /// Goes on after a picture of another film with the same settings. The scene is as it was then. Throws
+    /// Error(BadInput) if the history does not fit, and as render().
+    void restore(const FrameHistory& history);
+
     const Camera& camera() const { return camera_; }
     const RenderSettings& settings() const { return settings_; }
 
@@ -88,6 +100,8 @@ private:
     void commit_pass(Passes& passes, uint32_t count);
     void find_hidden_backs();
     void forget_samples();
+    PreviousScene scene_before();
+    DenoisedPicture denoise_shared();
     AddTargets targets_of_films();
     Film& fit_part(std::optional<Film>& film);
 
@@ -102,7 +116,9 @@ private:
     bool film_is_old_ = false;      // film_ holds samples of an outdated picture
     RenderStats stats_;             // without the values that stats() reads from the device
     std::optional<double> hidden_back_share_;
-    uint64_t number_; // number of the picture (PictureRenderer::new_number)
+    uint64_t number_;              // number of the picture (PictureRenderer::new_number)
+    uint64_t begun_number_ = 0;    // that of the picture which steps_ have begun to denoise for several devices
+    bool scene_has_moved_ = false; // since the picture that left a history; its positions of then are kept
     bool interrupts_passes_ = false;
 };
 

@@ -23,20 +23,25 @@ struct FrameRange {
     uint32_t turntable = 0;         // frames per revolution of the camera; 0: it does not revolve
     std::vector<std::string> names; // name of each frame's camera; empty: all frames have the same
     std::optional<Shutter> shutter; // around each frame's time; without it a frame shows one moment
-    std::vector<uint32_t> cuts;     // frames in real time whose history starts again, in order; the first frame's does
+    std::vector<uint32_t> cuts;     // frames whose history starts again, in order; the first frame's does
     std::optional<PartNumber> part; // the frames that this process writes; none: all
 
     uint32_t count() const { return last - first + 1; }
     /// Returns the frames [first, end) of the part.
     std::pair<uint32_t, uint32_t> of_part() const;
-    /// Returns whether the history of a frame in real time begins with it.
+    /// Returns whether the history of a frame begins with it.
     bool is_cut(uint32_t frame) const;
-    /// Returns the frame in real time with which the history of `frame` begins.
+    /// Returns the frame with which the history of `frame` begins.
     uint32_t cut_before(uint32_t frame) const;
     /// Time of a frame of a moving scene: k / fps seconds for frame k.
     std::optional<double> time_of(uint32_t frame) const { return fps ? std::optional(frame / *fps) : time_s; }
     /// Index of the sample per pixel that a real-time frame takes: the frame's number, modulo the maximum.
     static uint32_t sample_of(uint32_t frame) { return frame % kMaxSamplesPerPixel; }
+    /// Index of the first of `count` samples per pixel that a frame with a history takes, as if those of all frames
+    /// followed one another.
+    static uint32_t first_sample_of(uint32_t frame, uint32_t count) {
+        return frame % (kMaxSamplesPerPixel / count) * count;
+    }
     /// Fraction of a revolution, in [0, 1).
     double turn_of(uint32_t frame) const { return turntable == 0 ? 0 : double(frame % turntable) / turntable; }
     /// Fraction of a revolution after `share` in [0, 1] of the time that the shutter is open.

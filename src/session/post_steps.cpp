@@ -23,6 +23,11 @@ RenderSettings settings_of_features(const RenderSettings& settings, bool follows
     return of_features;
 }
 
+Camera pinhole_of(Camera camera) {
+    camera.aperture_radius = 0;
+    return camera;
+}
+
 } // namespace
 
 std::vector<std::unique_ptr<Denoiser>> make_denoisers(Queue& queue, const RenderSettings& settings) {
@@ -31,7 +36,10 @@ std::vector<std::unique_ptr<Denoiser>> make_denoisers(Queue& queue, const Render
     case Denoise::None:
         break;
     case Denoise::Svgf:
-        denoisers.push_back(std::make_unique<PictureDenoiser>(queue, settings.width, settings.height));
+        denoisers.push_back(settings.has_history()
+                                ? std::make_unique<PictureDenoiser>(queue, settings.width, settings.height,
+                                                                    settings.samples, settings.history)
+                                : std::make_unique<PictureDenoiser>(queue, settings.width, settings.height));
         break;
     case Denoise::Oidn:
         denoisers.push_back(std::make_unique<OidnDenoiser>(queue, settings.width, settings.height));
@@ -73,23 +81,47 @@ std::string PostSteps::names() const {
     return names;
 }
 
-bool PostSteps::begin(const Camera& camera, const RenderSettings& settings, Sink* sink) {
+PictureHistory* PostSteps::history() const {
+    PictureHistory* const history = denoisers_.empty() ? nullptr : denoisers_.front()->history();
+    return history != nullptr && history->is_there() ? history : nullptr;
+}
+
+/// Makes the steps for a picture, and the frame for its samples. Returns the settings of samples of surfaces.
+RenderSettings PostSteps::fit(const RenderSettings& settings) {
     NoisyFrame& frame = fit_frame(pictures_.scene(), sample_, settings.width, settings.height);
-    if (made_for_ != std::tuple(settings.denoise, settings.width, settings.height)) {
+    const bool has_history = settings.has_history();
+    const std::tuple wanted(settings.denoise, settings.width, settings.height, has_history ? settings.samples : 0,
+                            has_history ? settings.history : 0);
+    if (made_for_ != wanted) {
         denoisers_.clear(); // freed before the new ones, so that both need not fit
         denoisers_ = make_denoisers(pictures_.queue(), settings);
-        made_for_ = {settings.denoise, settings.width, settings.height};
+        made_for_ = wanted;
     }
     const FilmPart part = settings.part();
     const uint32_t rows = part.end_row - part.first_row;
     window_ = {.width = settings.width, .height = rows};
     if (rows < settings.height) window_.picture_width = settings.width, window_.y = part.first_row;
     mirrors_ = frame.splits_light() ? denoisers_.front()->mirrors() : MirrorChainView{};
-    const RenderSettings of_features = settings_of_features(settings, mirrors_.is_there());
-    find_centres(camera, of_features, sink);
+    return settings_of_features(settings, mirrors_.is_there());
+}
+
+bool PostSteps::begin(const Camera& camera, const RenderSettings& settings, Sink* sink, const PreviousScene& before) {
+    const RenderSettings of_features = fit(settings);
+    find_centres(camera, of_features, before, sink);
     const bool is_whole = add_features(camera, of_features, sink);
     if (is_whole) follow(-1);
     return is_whole;
+}
+
+void PostSteps::begin_restored(const Camera& camera, const RenderSettings& settings, const PreviousScene& before) {
+    find_centres(camera, fit(settings), before, nullptr);
+}
+
+void PostSteps::restore_history(const Camera& camera, const RenderSettings& settings,
+                                std::span<const std::vector<std::byte>> arrays) {
+    RenderSettings of_centres = fit(settings);
+    sample_centres(of_centres);
+    denoisers_.front()->history()->restore(arrays, view_of_centres(pinhole_of(camera), of_centres));
 }
 
 /// Lets the frame record, of mirrors, the lobe at `lobe`.
@@ -98,20 +130,29 @@ void PostSteps::follow(float lobe) {
     sample_->follow(mirrors_);
 }
 
+CameraView PostSteps::view_of_centres(const Camera& pinhole, const RenderSettings& of_centres) {
+    return pictures_.view_of(pinhole, of_centres).camera.view;
+}
+
 /// Passes to the steps the surfaces at the centres of pixels, as a pinhole sees them.
-void PostSteps::find_centres(const Camera& camera, const RenderSettings& of_features, Sink* sink) {
+void PostSteps::find_centres(const Camera& camera, const RenderSettings& of_features, const PreviousScene& before,
+                             Sink* sink) {
     NoisyFrame& frame = *sample_;
     RenderSettings of_centres = of_features;
     sample_centres(of_centres);
-    Camera pinhole = camera;
-    pinhole.aperture_radius = 0;
+    const Camera pinhole = pinhole_of(camera);
     Integrator& of_pinhole = pictures_.begin(pinhole, of_centres, 1);
     frame.begin();
     of_pinhole.stop_with(sink);
     follow(0);
     of_pinhole.render(0, 1, frame.film_view());
-    const CameraView centres = pictures_.view_of(pinhole, of_centres).camera.view;
-    for (const auto& denoiser : denoisers_) denoiser->begin(frame, centres, window_);
+    const CameraView centres = view_of_centres(pinhole, of_centres);
+    for (const auto& denoiser : denoisers_) {
+        denoiser->begin(frame, centres, window_);
+        PictureHistory* const history = denoiser->history();
+        if (history == nullptr) continue;
+        history->is_there() ? denoiser->follow(frame, pictures_.scene().view(), before) : history->cut();
+    }
     if (!mirrors_.is_there()) return;
     denoisers_.front()->guide_mirrors(frame);
     follow(kLastLobe);

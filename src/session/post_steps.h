@@ -34,8 +34,17 @@ public:
     explicit PostSteps(PictureRenderer& pictures) : pictures_(pictures) {}
 
     /// Begins a picture, or the part of its rows: creates the steps that `settings` request, and passes them the
-    /// visible surfaces. Returns false once `sink` stops; null: never. Throws Error(OutOfMemory, DeviceFault).
-    bool begin(const Camera& camera, const RenderSettings& settings, Sink* sink);
+    /// visible surfaces. Returns false once `sink` stops; null: never. If there is a history, `before` is where the
+    /// scene was in the frame that left it. Throws Error(OutOfMemory, DeviceFault).
+    bool begin(const Camera& camera, const RenderSettings& settings, Sink* sink, const PreviousScene& before = {});
+    /// Begins a picture whose samples come by restore().
+    void begin_restored(const Camera& camera, const RenderSettings& settings, const PreviousScene& before);
+    /// Returns the history of frames; null if there is none.
+    PictureHistory* history() const;
+    /// Goes on after a frame seen by `camera`, with what PictureHistory::save returned. Throws Error(BadInput) if it
+    /// does not fit, and as begin().
+    void restore_history(const Camera& camera, const RenderSettings& settings,
+                         std::span<const std::vector<std::byte>> arrays);
     /// Renders samples [first, first + count) into `film` and into each step. Stops in the middle once `sink` stops;
     /// film and steps must then be discarded. Null: never. Throws std::logic_error for a film of other rows than
     /// those of begin(), or of a part of them.
@@ -53,7 +62,9 @@ public:
 
 private:
     void follow(float lobe);
-    void find_centres(const Camera& camera, const RenderSettings& of_features, Sink* sink);
+    RenderSettings fit(const RenderSettings& settings);
+    CameraView view_of_centres(const Camera& pinhole, const RenderSettings& of_centres);
+    void find_centres(const Camera& camera, const RenderSettings& of_features, const PreviousScene& before, Sink* sink);
     bool add_features(const Camera& camera, const RenderSettings& of_features, Sink* sink);
 
     PictureRenderer& pictures_;
@@ -61,7 +72,8 @@ private:
     MirrorChainView mirrors_; // that samples of surfaces follow
     PixelWindow window_;      // the rows that are rendered
     std::vector<std::unique_ptr<Denoiser>> denoisers_;
-    std::tuple<Denoise, uint32_t, uint32_t> made_for_ = {}; // kind of steps, and the size of their picture
+    // Kind of steps, the size of their picture, and samples and frames of a history.
+    std::tuple<Denoise, uint32_t, uint32_t, uint32_t, uint32_t> made_for_ = {};
 };
 
 } // namespace pertev

@@ -69,6 +69,7 @@ public:
     }
     uint32_t render(SampleRange range, Sink& sink = nobody()) { return film_.render(range, sink); }
     uint32_t render(uint32_t samples, Sink&& sink) { return render(samples, sink); }
+    FilmRender& film_render() { return film_; }
     void interrupt_passes(bool leaves) { film_.interrupt_passes(leaves); }
 
     /// Returns the film of the current picture. It is all zero before the first sample.

@@ -117,10 +117,10 @@ std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& se
     if ((settings.sample_layers & kLayerVariance) != 0) of_sample.emplace(make_film(queue, settings));
     std::optional<MotionVectorMemory> motion;
     Buffer<InstanceView> places_before;
-    if ((settings.aovs & kAovMotion) != 0) {
-        motion.emplace(queue, width, height);
+    const bool has_motion = (settings.aovs & kAovMotion) != 0;
+    if (has_motion) motion.emplace(queue, width, height);
+    if (has_motion || settings.has_history())
         places_before.grow(queue, scene.scene->instances.size(), "instances before");
-    }
     return tracing.bytes();
 }
 

@@ -59,6 +59,8 @@ std::optional<SettingConflict> conflict_of(const PictureOptions& options, const 
         return SettingConflict{&setting, Kind::Integrator, integrators_with(setting), value_in(setting.integrators_of)};
     }
     std::vector<std::string> needs = words_of(setting.needs);
+    // All frames of verbs without the setting are in real time.
+    if (setting.needs.starts_with("real_time") && (find_setting("real_time")->verbs & verbs) == 0) needs.clear();
     std::erase_if(needs, [&](const std::string& other) { return (setting_of(other)->verbs & verbs) == 0; });
     const auto is_so = [&](const std::string& other) { return holds(options, other); };
     if (!needs.empty() && std::ranges::none_of(needs, is_so)) return SettingConflict{&setting, Kind::Needs, needs};

@@ -128,7 +128,7 @@ std::vector<Setting> frame_settings() {
             [](PictureOptions& o) -> SettingField { return InverseSwitch{&o.reconstruction.settings.anti_alias}; },
             "Temporal anti-aliasing is off."),
         row("history", "Frames", "N", FIELD(reconstruction.settings.history),
-            "The maximum number of accumulated frames.", Range{1, 1024}),
+            "The maximum number of accumulated frames; 0: each by itself.", Range{0, 1024}),
         row("passes", "Frames", "N", FIELD(reconstruction.settings.passes),
             "The number of passes of the wavelet filter.", Range{0, 8}),
         row("restir", "Frames", "NAME", FIELD(reconstruction.sharing.light),
@@ -150,7 +150,7 @@ std::vector<Setting> frame_settings() {
     };
     for (Setting& row : rows) {
         row.verbs = kRender | kView | kBenchFrames | kBenchSequence;
-        row.needs = "real_time";
+        row.needs = std::string_view(row.name) == "history" ? "real_time denoise=svgf" : "real_time";
     }
     rows.insert(
         rows.begin(),

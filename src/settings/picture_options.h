@@ -4,6 +4,7 @@
 // (settings/setting_table.h) has a row for each field. An empty text or 0 means that a setting was not given, unless
 // a comment says otherwise.
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -76,7 +77,11 @@ struct ReconstructionOptions {
     bool none = false; // frames show their raw samples
 
     /// The settings of the reconstruction; without it of_samples_alone.
-    ReconstructionSettings used() const { return none ? of_samples_alone(settings) : settings; }
+    ReconstructionSettings used() const {
+        ReconstructionSettings used = none ? of_samples_alone(settings) : settings;
+        used.history = std::max(used.history, 1u);
+        return used;
+    }
     /// Returns whether an option is set that only integrators with frames have (makes_frames).
     bool has_frame_options() const { return sharing.light != RestirLight::Off || settings.resolution_scale != 1; }
 };
@@ -129,6 +134,12 @@ struct PictureOptions {
     /// Names of the settings that were given, and their sources.
     std::map<std::string, SettingOrigin, std::less<>> given;
     bool is_given(std::string_view name) const { return given.contains(name); }
+    /// Returns whether there are frames one after the other; pictures of a list of cameras are not.
+    bool is_sequence() const { return !frames.empty() || turntable > 0; }
+    /// Returns whether ordinary frames have a history (RenderSettings::has_history).
+    bool keeps_history() const {
+        return !real_time && is_sequence() && render.denoise == Denoise::Svgf && reconstruction.settings.history > 1;
+    }
 };
 
 } // namespace pertev

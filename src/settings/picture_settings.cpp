@@ -162,8 +162,8 @@ std::vector<Setting> picture_settings() {
         row("part_base", "Parts", "B", FIELD(part_base), "The number of the first part.", Range{0, 1u << 31},
             Needs{"part"}, Mark::NotKept, Changes::Picture),
         row("checkpoint", "Parts", "FILE", FIELD(checkpoint),
-            "A film file (.pvf) of the samples so far, from which the render goes on; in real time the frames' "
-            "history, for continue.",
+            "A film file (.pvf) of the samples so far, from which the render goes on; or the history of frames, for "
+            "continue.",
             Mark::NotKept, Changes::Picture),
         row("checkpoint_every", "Parts", "SECONDS", FIELD(checkpoint_every_s),
             "The time between two writings of the checkpoint.", Above{0}, Unit{"s"}, Needs{"checkpoint"}, Mark::NotKept,

@@ -50,7 +50,8 @@ bool same_picture(const RenderSettings& a, const RenderSettings& b) {
     return a.width == b.width && a.height == b.height && a.crop == b.crop && a.filter == b.filter &&
            filter_radius_of(a) == filter_radius_of(b) && a.aovs == b.aovs && a.layers_at == b.layers_at &&
            a.sample_layers == b.sample_layers && a.transparent == b.transparent && a.denoise == b.denoise &&
-           a.first_sample == b.first_sample && a.first_row == b.first_row && a.end_row == b.end_row && same_light(a, b);
+           a.first_sample == b.first_sample && a.first_row == b.first_row && a.end_row == b.end_row &&
+           a.history == b.history && same_light(a, b);
 }
 
 } // namespace pertev

@@ -46,6 +46,7 @@ struct RenderSettings : IntegratorSettings {
     bool transparent = false;        // RGBA: the background is omitted, and alpha is the covered fraction of the
                                      // pixel
     Denoise denoise = Denoise::None; // the film does not change
+    uint32_t history = 0;            // the most frames of a sequence whose light denoised pictures mix; up to 1: none
     /// Maximum number of scatterings in real-time frames, if that is below path.max_depth; none: no separate limit.
     /// It does not affect the film.
     std::optional<uint32_t> frame_depth;
@@ -62,6 +63,8 @@ struct RenderSettings : IntegratorSettings {
     bool time_kinds = false;             // fills RenderStats::kind_seconds, which slows the wavefront down
 
     bool is_denoised() const { return denoise != Denoise::None; }
+    /// Returns whether denoised pictures depend on those before them.
+    bool has_history() const { return denoise == Denoise::Svgf && history > 1; }
     SampleRange range() const { return {first_sample, samples}; }
     /// The window of the picture that the film holds.
     PixelWindow window() const {

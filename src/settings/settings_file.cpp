@@ -103,7 +103,7 @@ std::string reconstruction_json(const ReconstructionOptions& options, std::optio
     used.render.frame_depth = frame_depth;
     std::string members;
     for (const Setting& setting : all_settings()) {
-        if (setting.needs != "real_time" || setting.group != SettingGroup::Frames) continue;
+        if (!setting.needs.starts_with("real_time") || setting.group != SettingGroup::Frames) continue;
         if (texts_of(used, setting).empty()) continue;
         members += fmt::format("{}\"{}\":{}", members.empty() ? "" : ",", setting.name, json_of(used, setting));
     }

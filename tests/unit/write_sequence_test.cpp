@@ -139,7 +139,8 @@ TEST_CASE("the settings of a frame reproduce it without its sequence") {
     record.display = Display{.exposure_stops = 1.25f}; // the exposure is metered at the first frame
     CHECK(has(settings_of({{"frames", "3-9"}}, 4), R"("exposure":"1.25")"));
     CHECK(!has(settings_of({{"time", "2"}}, 0), "exposure"));
-    record.frame = ReconstructedFrame{.number = 4, .cut = 3};
+    record.frame = ReconstructedFrame();
+    record.in_sequence = FrameInSequence{.number = 4, .cut = 3};
     json = settings_of({{"frames", "3-9"}, {"real_time", "true"}}, 4);
     CHECK(has(json, R"("frames":"3-4")")); // it depends on earlier frames
 }

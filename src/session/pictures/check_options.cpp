@@ -33,6 +33,14 @@ void check_real_time(const PictureOptions& options) {
                 "a frame with `real_time` has one sample per pixel");
 }
 
+/// Refuses settings of a history that a denoised picture does not have.
+void check_history(const PictureOptions& options, uint32_t verbs) {
+    if ((verbs & kRender) == 0 || options.real_time || options.is_sequence()) return;
+    for (const char* const name : {"history", "cuts"}) {
+        if (options.is_given(name)) throw Error(ErrorCode::BadInput, name, "", "needs `frames` or `turntable`");
+    }
+}
+
 void check_solution(const std::string& file) {
     if (std::error_code fault; file.empty() || std::filesystem::exists(file, fault)) return;
     throw Error(ErrorCode::BadInput, "solution", file, "the file does not exist");
@@ -59,6 +67,7 @@ void check_options(const PictureOptions& options, uint32_t verbs) {
     row_range(options);
     check_crop(options);
     check_real_time(options);
+    check_history(options, verbs);
     if (options.reconstruction.used().denoiser == FrameDenoiser::Oidn) OidnLibrary::find("frame_denoiser");
     requested_exposure(options);
     if (!options.lut.empty()) CubeLut::read(options.lut);

@@ -20,13 +20,13 @@ void set(PictureOptions& options, const char* name, const std::string& text) {
 /// Replaces the frames by one.
 void keep_frame(PictureOptions& options, const PictureRecord& record, uint32_t frame) {
     const bool has_motion = (record.settings.aovs & kAovMotion) != 0;
-    if (options.real_time || options.turntable > 0 || has_motion) {
+    if (record.in_sequence || options.turntable > 0 || has_motion) {
         options.given.erase("cuts");
         options.cuts.clear(); // no later one than the frame with which its history begins
-        const uint32_t first = record.frame ? record.frame->cut : frame;
+        const uint32_t first = record.in_sequence ? record.in_sequence->cut : frame;
         return set(options, "frames", fmt::format("{}-{}", first, frame));
     }
-    for (const char* name : {"frames", "fps"}) options.given.erase(name);
+    for (const char* name : {"frames", "fps", "history", "cuts"}) options.given.erase(name); // the last two need frames
     options.frames.clear();
     set(options, "time", fmt::format("{}", record.scene.time_s.value()));
 }

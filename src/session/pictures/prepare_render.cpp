@@ -59,6 +59,7 @@ RenderSettings take_settings(const RenderSetup& ready, PictureOptions& options, 
     if (options.strict) refuse_what_is_left_out(sink.messages(), "nothing was rendered");
     RenderSettings settings = render_settings(options, scene);
     settings.tracers = ready.settings.tracers;
+    if ((verbs & kRender) != 0 && options.keeps_history()) settings.history = options.reconstruction.settings.history;
     return settings;
 }
 
@@ -367,7 +368,8 @@ PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, 
     record.scene.build_seconds = ready.prepared().build_seconds;
     const uint32_t first = ready.sequence.first;
     if (options.real_time)
-        record.frame = ReconstructedFrame{first, first, options.reconstruction.used(), options.reconstruction.sharing};
+        record.frame = ReconstructedFrame{options.reconstruction.used(), options.reconstruction.sharing};
+    if (options.real_time || options.keeps_history()) record.in_sequence = FrameInSequence{first, first};
     place_frame(first, *ready.moving, {*ready.camera, ready.sequence, ready.list}, record);
     record_settings(options, ready.scene(), first, record);
     return record;

@@ -32,6 +32,27 @@ void show_frame_before(uint32_t frame, const FrameCamera& camera, MovingScene& m
     session.store_previous();
 }
 
+/// Renders a frame of samples. With a history, frames have samples of their own numbers, else their noise would be the
+/// same; layers of ids stay those of sample 0.
+RenderedFrame render_picture_of(uint32_t frame, Session& session, PictureRecord& record, double update_s, Sink& sink) {
+    const uint32_t count = record.settings.samples;
+    uint32_t first = 0;
+    session.film_render().begin_picture(); // nothing may have moved
+    if (record.in_sequence) {
+        record.in_sequence->number = frame;
+        first = FrameRange::first_sample_of(frame, count);
+    }
+    const uint32_t rendered = session.render(SampleRange{first, first + count}, sink);
+    if (rendered < count && record.in_sequence) return {{}, update_s}; // denoising would end the history
+    RenderedFrame made = {session.result(), update_s};
+    if (first == 0 || (record.settings.aovs & kAovIds) == 0) return made;
+    RenderSettings of_ids = record.settings;
+    of_ids.aovs = kAovIds, of_ids.sample_layers = 0, of_ids.denoise = Denoise::None;
+    of_ids.samples = 1, of_ids.path.max_depth = 0;
+    made.result.ids = session.render_separately(session.camera(), of_ids).ids;
+    return made;
+}
+
 } // namespace
 
 void seek(std::optional<double> time_s, MovingScene& moving, Session& session, Sink& sink) {
@@ -77,10 +98,9 @@ RenderedFrame render_frame(uint32_t frame, const SequenceOfFrames& frames, Sink&
     const double update_s = update.seconds();
     if (!record.frame) {
         session.interrupt_passes(true); // a frame without all its samples is worth nothing
-        session.render(record.settings.samples, sink);
-        return {session.result(), update_s};
+        return render_picture_of(frame, session, record, update_s, sink);
     }
-    record.frame->number = frame;
+    record.in_sequence->number = frame;
     const Stopwatch watch;
     if (!session.render_frame(FrameRange::sample_of(frame), record.frame->reconstruction, record.frame->restir, sink)) {
         return {{}, update_s};

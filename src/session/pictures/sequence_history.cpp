@@ -17,7 +17,12 @@ uint32_t SequenceHistory::restore(uint32_t first, uint32_t end, Sink& sink) {
     if (!kept || kept->frame < first || kept->frame >= end) return first;
     seek_frame(kept->frame, frames_.camera, frames_.moving, frames_.session, frames_.record, sink);
     kept->history.camera = frames_.session.camera();
-    frames_.session.frames().restore(std::move(kept->history), frames_.session.settings(), sink);
+    Session& session = frames_.session;
+    if (frames_.record.frame) {
+        session.frames().restore(std::move(kept->history), session.settings(), sink);
+    } else {
+        session.film_render().restore(kept->history);
+    }
     kept_ = kept->frame;
     sink.note(fmt::format("resumes after frame {} in {}", kept->frame, file_.file()));
     return kept->frame + 1;
@@ -38,8 +43,11 @@ void SequenceHistory::add(uint32_t frame, Sink& sink) {
 void SequenceHistory::finish() { write(); }
 
 void SequenceHistory::write() {
-    if (!last_ || last_ == kept_ || !frames_.session.frames().has_history()) return;
-    file_.write(*last_, frames_.session.frames().history());
+    Session& session = frames_.session;
+    const bool in_real_time = frames_.record.frame.has_value();
+    const bool has_history = in_real_time ? session.frames().has_history() : session.film_render().has_history();
+    if (!last_ || last_ == kept_ || !has_history) return;
+    file_.write(*last_, in_real_time ? session.frames().history() : session.film_render().history());
     kept_ = last_;
 }
 

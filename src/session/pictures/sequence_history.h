@@ -1,7 +1,7 @@
 #pragma once
 
-// Keeps the history of a sequence in real time in its checkpoint (session/film_file/history_file.h), so that an
-// interrupted one goes on without rendering its frames again.
+// Keeps the history of a sequence, in real time or of denoised frames, in its checkpoint
+// (session/film_file/history_file.h), so that an interrupted one goes on without rendering its frames again.
 
 #include <optional>
 

@@ -24,7 +24,8 @@ DecidingSettings settings_of(const PictureOptions& options, const FrameRange& se
     return settings;
 }
 
-/// Finishes the frame under way if the caller stops, because an unfinished one would take the history along.
+/// Finishes the frame in real time under way if the caller stops, because an unfinished one would take the history
+/// along.
 struct WholeFrame final : Sink {
     explicit WholeFrame(Sink& caller) : of_caller(caller) {}
     void receive(const Message& message) override { of_caller.receive(message); }
@@ -46,7 +47,7 @@ public:
             remove_leftovers(done_.path());
             done_.load();
         }
-        if (!frames.record.frame) return;
+        if (!has_history()) return;
         find_runs();
         if (!options.checkpoint.empty())
             history_.emplace(frames, options, settings_of(options, sequence_, frames.record));
@@ -68,12 +69,14 @@ public:
     }
 
 private:
-    /// Frames [first, end) in real time that are rendered one after the other, since they are missing or the history of
-    /// missing ones, which begins at a cut.
+    /// Frames [first, end) with a history that are rendered one after the other, since they are missing or the history
+    /// of missing ones, which begins at a cut.
     struct Run {
         uint32_t cut, first, end;
     };
 
+    /// Returns whether frames depend on those before them.
+    bool has_history() const { return frames_.record.in_sequence.has_value(); }
     bool is_own(uint32_t frame) const { return frame >= own_.first; }
     bool is_there(uint32_t frame) const { return options_.goes_on && is_own(frame) && done_.has(frame); }
     /// Returns the first frame that is rendered, written or kept.
@@ -101,7 +104,7 @@ private:
 
     void begin_run(const Run& run) {
         frames_.session.cut();
-        frames_.record.frame->cut = run.cut;
+        frames_.record.in_sequence->cut = run.cut;
     }
 
     void report_history(const Run& run) {
@@ -134,16 +137,16 @@ private:
         made.time_s = sequence_.time_of(frame);
         if (!sequence_.names.empty()) made.camera = sequence_.names[frame];
         made.is_kept = is_there(frame);
-        const bool is_rendered = frames_.record.frame ? is_in_run(frame) : !made.is_kept;
+        const bool is_rendered = has_history() ? is_in_run(frame) : !made.is_kept;
         if (is_rendered) {
-            if (frames_.record.frame) report_progress(made, 0);
+            if (has_history()) report_progress(made, 0);
             const auto begun = std::ranges::find(runs_, frame, &Run::cut);
             if (begun != runs_.end() && begun != runs_.begin()) begin_run(*begun);
             auto [result, update_s] = render(made);
             if (result.samples < frames_.record.settings.samples) return false;
             tally.has_begun = true;
             made.hash = picture_hash(result.picture).hex();
-            if (frames_.record.frame) done_.check_picture(frame, made.hash);
+            if (has_history()) done_.check_picture(frame, made.hash);
             made.samples = result.samples;
             made.update_s = update_s;
             made.render_s = result.render_seconds;
@@ -162,7 +165,7 @@ private:
                 report_progress(made, now.made_share >= 1 ? now.share : 0);
                 return true;
             },
-            history_ ? whole_ : sink_);
+            history_ && frames_.record.frame ? whole_ : sink_);
         return render_frame(made.frame, frames_, part);
     }
 
@@ -194,7 +197,7 @@ private:
     const std::pair<uint32_t, uint32_t> own_; // the frames [first, end) of this part
     SequenceRecord done_;
     const Stopwatch watch_;
-    std::vector<Run> runs_;                  // in real time, in order
+    std::vector<Run> runs_;                  // frames with a history, in order
     std::optional<SequenceHistory> history_; // with a checkpoint
     WholeFrame whole_{sink_};
 };

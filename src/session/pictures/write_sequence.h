@@ -40,9 +40,10 @@ struct SequenceTally {
 
 /// Renders and writes the frames in order, or with `continue` those that are not there yet, until the sink is
 /// cancelled, and counts in `tally` as it goes on. `frames` are at the first frame and have the exposure of all; frames
-/// in real time (PictureRecord::frame) begin with a cut, and those from the last one before a part are rendered, too. `outputs` are names with #. Calls `report` for each frame,
-/// also for one whose files could not all be written. Throws Error if a frame cannot be rendered or written, or if the
-/// frames that are there have other settings: those before it are whole.
+/// with a history (PictureRecord::in_sequence) begin with a cut, and those from the last one before a part are
+/// rendered, too. `outputs` are names with #. Calls `report` for each frame, also for one whose files could not all be
+/// written. Throws Error if a frame cannot be rendered or written, or if the frames that are there have other settings:
+/// those before it are whole.
 void write_sequence(const SequenceOfFrames& frames, const PictureOptions& options,
                     const std::vector<std::string>& outputs, Sink& sink,
                     const std::function<void(const FrameReport&)>& report, SequenceTally& tally);

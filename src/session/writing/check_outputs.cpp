@@ -145,7 +145,7 @@ void check_outputs(const PictureOptions& options, std::span<const std::string> o
         if (!frames) note_number_signs(output, sink);
     }
     if (!options.checkpoint.empty()) {
-        if (options.real_time) { // it keeps the history of frames
+        if (options.real_time || options.keeps_history()) { // it keeps the history of frames
             check_writable(options.checkpoint);
         } else {
             check_film_file(options, "checkpoint", options.checkpoint, frames.has_value());

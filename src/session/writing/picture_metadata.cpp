@@ -205,11 +205,15 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
         append(metadata, {{"pertev.radiosity", solution.made}, {"pertev.radiosity_hash", solution.hash().hex()}});
     }
     if (record.frame) {
-        append(metadata,
-               {{"pertev.reconstruction",
-                 reconstruction_json({record.frame->reconstruction, record.frame->restir}, settings.frame_depth)},
-                {"pertev.frame", static_cast<int32_t>(record.frame->number)},
-                {"pertev.first_frame", static_cast<int32_t>(record.frame->cut)}});
+        metadata.emplace_back(
+            "pertev.reconstruction",
+            reconstruction_json({record.frame->reconstruction, record.frame->restir}, settings.frame_depth));
+    } else if (settings.has_history()) {
+        metadata.emplace_back("pertev.history", static_cast<int32_t>(settings.history));
+    }
+    if (record.in_sequence) {
+        append(metadata, {{"pertev.frame", static_cast<int32_t>(record.in_sequence->number)},
+                          {"pertev.first_frame", static_cast<int32_t>(record.in_sequence->cut)}});
     }
     if (settings.irradiance) metadata.emplace_back("pertev.quantity", std::string("irradiance"));
     if (record.display && !record.display->false_colors) { // metered or given

@@ -46,9 +46,13 @@ struct CameraSource {
     DoubleVec3 origin = {0, 0, 0}; // origin of the camera's scene (Scene::origin_in_file)
 };
 
+/// A frame of a sequence that depends on those before it.
+struct FrameInSequence {
+    uint32_t number = 0, cut = 0; // number of the frame, and of the first one in its history
+};
+
 /// Reconstruction of a real-time frame (Session::render_frame) from its sample.
 struct ReconstructedFrame {
-    uint32_t number = 0, cut = 0; // number of the frame, and of the first one in its history
     ReconstructionSettings reconstruction;
     RestirSettings restir;
 };
@@ -84,8 +88,9 @@ struct PictureRecord {
     CameraSource camera;
     RenderSettings settings;
     std::string device;
-    std::optional<ReconstructedFrame> frame; // none: an ordinary picture of its samples
-    std::optional<Display> display;          // none: the picture is not displayed
+    std::optional<FrameInSequence> in_sequence; // none: the picture depends on no other
+    std::optional<ReconstructedFrame> frame;    // none: an ordinary picture of its samples
+    std::optional<Display> display;             // none: the picture is not displayed
     NumberFormats numbers = {};
 };
 
