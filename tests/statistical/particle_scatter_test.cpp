@@ -83,7 +83,7 @@ std::vector<BsdfCase> cases_with_deltas() {
 TEST_CASE("particles carry the power of paths for every BSDF, with geometric and interpolated normals") {
     const std::vector<BsdfCase> cases = cases_with_deltas();
     const auto tilts = effort(0, 1) != 0 ? std::vector<float>{0, 0.1f, 0.3f} : std::vector<float>{0, 0.3f};
-    const auto count = static_cast<uint32_t>(effort(256, 1 << 17));
+    const auto count = static_cast<uint32_t>(effort(512, 1 << 17));
     std::vector<Estimate> by_path(cases.size() * tilts.size()), by_particle(by_path.size());
     parallel_for(by_path.size(), 1, [&](uint64_t i) {
         const Surface surface = tilted_surface(cases[i / tilts.size()].bsdf, tilts[i % tilts.size()]);
