@@ -43,18 +43,31 @@ struct ReprojectHistory {
         const auto known = [&](const Float4* values) { return taps_of_known(taps, cameras, values); };
         if (const Taps of_diffuse = known(before.diffuse); of_diffuse.sum > kEnoughWeight) {
             to.diffuse[pixel] = mean_of_taps(of_diffuse, cameras, before.diffuse);
-            to.variances[pixel].x = mean_of_taps(of_diffuse, cameras, before.squares).x;
+            to.variances[pixel].x = variance_of_taps(of_diffuse, false);
         }
         if (!has_gloss) return;
         if (const Taps of_gloss = known(before.gloss); of_gloss.sum > kEnoughWeight) {
             Float4 gloss = mean_of_taps(of_gloss, cameras, before.gloss);
             gloss.w = min(gloss.w, samples * frames_of_lobe(abs(guide.albedo[pixel].w), hit));
             to.gloss[pixel] = gloss;
-            to.variances[pixel].y = mean_of_taps(of_gloss, cameras, before.squares).y;
+            to.variances[pixel].y = variance_of_taps(of_gloss, true);
         }
     }
 
 private:
+    /// Mean over the taps that know their variance, EstimateVariance::kUnknown if none does.
+    HD float variance_of_taps(const Taps& taps, bool of_gloss) const {
+        float sum = 0, weight = 0;
+        for (int k = 0; k < 4; ++k) {
+            if (!(taps.weights[k] > 0)) continue;
+            const Vec2 both = before.squares[tap_pixel(taps, cameras, k)];
+            const float variance = of_gloss ? both.y : both.x;
+            if (!(variance < EstimateVariance::kUnknown)) continue;
+            sum = fma(taps.weights[k], variance, sum);
+            weight += taps.weights[k];
+        }
+        return weight > 0 ? sum / weight : EstimateVariance::kUnknown;
+    }
     /// Number of frames before this one in which a camera with constant motion passes half a lobe of this width.
     HD float frames_of_lobe(float alpha, Float4 hit) const {
         const float turn = view_turn(cameras.now, cameras.before, point_at(scene.instances, scene.meshes, hit));

@@ -8,6 +8,7 @@
 
 #include "base/host_device.h"
 #include "device/atomics.h"
+#include "device/sync_block.h"
 
 namespace pertev {
 
@@ -25,7 +26,7 @@ public:
     HD BlockAppend() {
 #if PERTEV_ON_DEVICE
         if (threadIdx.x < kLists) shared()[threadIdx.x] = 0;
-        __syncthreads();
+        sync_block();
 #endif
     }
 
@@ -38,7 +39,7 @@ public:
         for (int l = 0; l < kLists; ++l) {
             if (adds[l]) slots.at[l] = atomicAdd(counts + l, 1u);
         }
-        __syncthreads();
+        sync_block();
         if (threadIdx.x < kLists) { // in parallel, which a loop would not be
             uint32_t* size = sizes[0];
             for (int l = 1; l < kLists; ++l) {
@@ -47,7 +48,7 @@ public:
             const uint32_t count = counts[threadIdx.x];
             counts[kLists + threadIdx.x] = count > 0 ? atomicAdd(size, count) : 0u;
         }
-        __syncthreads();
+        sync_block();
         for (int l = 0; l < kLists; ++l) slots.at[l] += counts[kLists + l];
 #else
         for (int l = 0; l < kLists; ++l) {

@@ -7,6 +7,7 @@
 
 #include "base/host_device.h"
 #include "device/atomics.h"
+#include "device/sync_block.h"
 
 namespace pertev {
 
@@ -22,9 +23,9 @@ HD inline uint32_t sorted_in_block(uint32_t i, [[maybe_unused]] uint32_t key) {
     __shared__ uint32_t starts[kBlockKeys]; // counts at first
     __shared__ uint16_t order[kThreads];
     if (threadIdx.x < kBlockKeys) starts[threadIdx.x] = 0;
-    __syncthreads();
+    sync_block();
     const uint32_t rank = atomicAdd(starts + key, 1u);
-    __syncthreads();
+    sync_block();
     if (threadIdx.x < kBlockKeys) { // prefix sums, in one warp
         const uint32_t count = starts[threadIdx.x];
         uint32_t sum = count;
@@ -34,9 +35,9 @@ HD inline uint32_t sorted_in_block(uint32_t i, [[maybe_unused]] uint32_t key) {
         }
         starts[threadIdx.x] = sum - count;
     }
-    __syncthreads();
+    sync_block();
     order[starts[key] + rank] = static_cast<uint16_t>(threadIdx.x);
-    __syncthreads();
+    sync_block();
     return i - threadIdx.x + order[threadIdx.x];
 #else
     return i;
@@ -50,14 +51,14 @@ HD inline uint32_t append_by_key(uint32_t* sizes, uint32_t key, bool adds) {
 #if PERTEV_ON_DEVICE
     __shared__ uint32_t counts[kBlockKeys];
     if (threadIdx.x < kBlockKeys) counts[threadIdx.x] = 0;
-    __syncthreads();
+    sync_block();
     const uint32_t rank = adds ? atomicAdd(counts + key, 1u) : 0u;
-    __syncthreads();
+    sync_block();
     if (threadIdx.x < kBlockKeys) {
         const uint32_t count = counts[threadIdx.x];
         counts[threadIdx.x] = count > 0 ? atomicAdd(sizes + threadIdx.x, count) : 0u;
     }
-    __syncthreads();
+    sync_block();
     return counts[key] + rank;
 #else
     return adds ? atomic_add(sizes + key, 1u) : 0u;

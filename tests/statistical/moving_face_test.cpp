@@ -62,7 +62,7 @@ double light_of_face(Queue& queue, bool follows, Projection projection) {
         references.update_scene(prepared, parts_of(update));
         references.cut();
         references.render(8);
-        light += mean_of(frames.frame().picture()), right += mean_of(references.picture());
+        light += test::mean_of(frames.frame().picture()), right += test::mean_of(references.picture());
     }
     return light / right;
 }

@@ -73,6 +73,9 @@ Part make_part(const TextureValue& value, const TextureImage* image, const Textu
     return part;
 }
 
+/// Texels farther away than this are as good as any, because no coordinate says which is meant.
+int64_t to_index(double texel) { return static_cast<int64_t>(std::clamp(texel, -0x1p52, 0x1p52)); }
+
 uint32_t wrapped(int64_t i, uint32_t size, Wrap wrap) {
     const int64_t n = size;
     if (wrap == Wrap::ClampToEdge) return static_cast<uint32_t>(std::clamp<int64_t>(i, 0, n - 1));
@@ -90,8 +93,8 @@ Rgb value_at(const Part& part, double s, double t) {
                      part.width,
                  y = (static_cast<double>(part.down.scale) * t + static_cast<double>(part.down.offset)) * part.height;
     const auto texel = [&](double column, double row) {
-        const uint32_t i = wrapped(static_cast<int64_t>(column), part.width, part.across.wrap),
-                       k = wrapped(static_cast<int64_t>(row), part.height, part.down.wrap);
+        const uint32_t i = wrapped(to_index(column), part.width, part.across.wrap),
+                       k = wrapped(to_index(row), part.height, part.down.wrap);
         const auto c = linear_texel(*part.image, std::size_t{k} * part.width + i, change, decodes);
         return Rgb{c[0], c[1], c[2]};
     };
@@ -110,10 +113,11 @@ Rgb value_at(const Part& part, double s, double t) {
 
 /// The pixels of the combined image along one side, of which the parts have so many, repeated so often.
 uint32_t side_of(const std::vector<Part>& parts, uint32_t Part::*size, Axis Part::*axis) {
-    uint64_t smooth = 1, sharp = 1;
+    uint64_t smooth = 1, sharp = 1, most = kMostSide;
     bool has_smooth = false;
     for (const Part& part : parts) {
         if (part.image == nullptr) continue;
+        most = std::max<uint64_t>(most, part.*size);
         const uint64_t pixels = static_cast<uint64_t>(abs((part.*axis).scale)) * (part.*size);
         if (part.is_sharp()) {
             sharp = std::min<uint64_t>(std::lcm(sharp, pixels), kMostSide);
@@ -121,7 +125,6 @@ uint32_t side_of(const std::vector<Part>& parts, uint32_t Part::*size, Axis Part
             smooth = std::max(smooth, pixels), has_smooth = true;
         }
     }
-    const uint64_t most = std::max<uint64_t>(kMostSide, smooth > kMostSide && sharp == 1 ? smooth : 0);
     if (sharp == 1) return static_cast<uint32_t>(std::min(smooth, most));
     const uint64_t wanted = has_smooth ? std::max<uint64_t>(smooth, kLeastSide) : sharp;
     const uint64_t times = std::max<uint64_t>(std::min((wanted + sharp - 1) / sharp, kMostSide / sharp), 1);

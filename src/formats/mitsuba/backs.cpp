@@ -17,7 +17,7 @@ using described::Placed;
 using described::ShapeMesh;
 using described::Surface;
 
-constexpr uint64_t kMostTests = 1 << 24; // pairs of a point and a triangle, for one shape
+constexpr uint64_t kMostTests = 1 << 26; // pairs of a point and a triangle, for all shapes
 
 uint64_t mixed(uint64_t x) { // splitmix64's finish
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
@@ -105,9 +105,12 @@ bool encloses(const Placed& shape, const ShapeMesh& mesh, DoubleVec3 point) {
 }
 
 /// Returns whether all points lie in front of each triangle of a shape, or in its plane. Meshes with many triangles
-/// before many points count as others.
-bool are_in_front(const std::vector<DoubleVec3>& points, double slack, const Placed& shape, const ShapeMesh& mesh) {
-    if (mesh.mesh.triangle_count() * points.size() > kMostTests) return false;
+/// before many points, for which too few tests are left, count as others.
+bool are_in_front(const std::vector<DoubleVec3>& points, double slack, const Placed& shape, const ShapeMesh& mesh,
+                  uint64_t& tests_left) {
+    const uint64_t tests = uint64_t{mesh.mesh.triangle_count()} * points.size();
+    if (tests > tests_left) return false;
+    tests_left -= tests;
     return each_triangle(shape, mesh, [&](const WorldTriangle& t) {
         const DoubleVec3 n = t.normal();
         const double least = -slack * std::sqrt(dot(n, n));
@@ -136,6 +139,7 @@ VisibleBacks find_visible_backs(const Parts& parts, std::span<const DoubleVec3> 
     for (const DoubleVec3 point : points) all.extend(point);
     const double slack = all.is_empty() ? 0 : 1e-5 * std::sqrt(dot(all.hi - all.lo, all.hi - all.lo));
     std::map<uint32_t, Closure> closures; // by mesh
+    uint64_t tests_left = kMostTests;
     for (std::size_t i = 0; i < parts.placed.size(); ++i) {
         const Placed& shape = parts.placed[i];
         if (!concerns(shape)) continue;
@@ -156,7 +160,7 @@ VisibleBacks find_visible_backs(const Parts& parts, std::span<const DoubleVec3> 
         if (closure != Closure::Open && !is_cut_out && std::ranges::all_of(sensors, is_before) &&
             (!sensors.empty() || closure == Closure::Outwards))
             continue;
-        if (are_in_front(points, slack, shape, mesh)) continue;
+        if (are_in_front(points, slack, shape, mesh, tests_left)) continue;
         if (found.count++ == 0) found.first = i;
     }
     return found;
