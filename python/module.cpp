@@ -88,13 +88,14 @@ std::vector<nb::dict> settings_of_parts() {
     return rows;
 }
 
-/// Returns the settings of any picture, or those of frames: `frames`, `turntable` and what needs these, except
-/// `continue`, which is about files.
+/// Returns the settings of any picture, or those of frames: `frames`, `turntable` and what needs these, whatever value
+/// of another setting is needed beside them, except `continue`, which is about files.
 std::vector<nb::dict> settings_of(bool frames) {
     std::vector<nb::dict> rows;
     std::set<std::string, std::less<>> of_sequences = {"frames", "turntable", "cameras", "stereo"};
     for (const Setting& setting : all_settings()) {
-        const std::vector<std::string> needs = words_of(setting.needs);
+        std::vector<std::string> needs = words_of(setting.needs);
+        std::erase_if(needs, [](const std::string& need) { return need.find('=') != std::string::npos; });
         const auto is_of_sequences = [&](const std::string& name) { return of_sequences.contains(name); };
         if (!needs.empty() && std::ranges::all_of(needs, is_of_sequences)) of_sequences.insert(setting.name);
         if ((setting.verbs & kRender) == 0 || is_of_sequences(setting.name) != frames) continue;

@@ -20,6 +20,8 @@ struct PictureHistoryView {
     Vec2* variances; // variance of a sample of both
 };
 
+class NoisyFrame;
+
 class PictureHistory {
 public:
     /// Makes a history of at most `frames` - 1 frames with `samples` samples of each pixel.
