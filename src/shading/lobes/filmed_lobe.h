@@ -4,7 +4,7 @@
 // scattering, and a thin film (KHR_materials_iridescence) or, without one, a metal's F82 tint; else it is as
 // specular_lobe.h. A lobe of its own, so that the common ones stay small.
 //
-// What lies beneath gets 1 - max(C(o), C(i)) of the light, with the strongest channel's reflectance C by
+// The layers beneath get 1 - max(C(o), C(i)) of the light, with the strongest channel's reflectance C by
 // Microfacets::schlick(), or with a film its own at that angle: neither a film's colours nor stretched microfacets have
 // an average that the form of schlick_lobe.h needs.
 

@@ -4,7 +4,7 @@
 // cos)^2 for cos > alpha: a cosine lobe would miss it for small alpha and cause weights of 100. Density by solid
 // angle of the grazing lobe: cos / (pi L (cos^2 + alpha^2)), L = log(1 + 1 / alpha^2); for large alpha a cosine lobe.
 //
-// What metal loses is drawn by a mixture of that lobe, a cosine and a cosine's cube, because the lobe alone is too thin
+// A mixture of that lobe, a cosine and a cosine's cube draws what metal loses, because the lobe alone is too thin
 // far from the horizon (weights of 4 at roughness 0.05). The shares are those of a search over roughness and angle.
 
 #include "base/host_device.h"
