@@ -3,13 +3,13 @@
 #   tools/check_gpu.sh BIN SCENES [PART ...]
 # BIN is the folder of pertev and pertev_tests (build/bin, or a bundle of tools/make_portable.sh), SCENES the folder of the
 # public test scenes (docs/scenes.md), with those of tools/make_record_scenes.py, without which bench leaves out rays. Parts: tests,
-# python, long, pictures, sanitizers, stalls, references, bench, viewer; all without any. Exits 1 when something failed.
+# python, long, pictures, counters, sanitizers, stalls, references, bench, viewer; all without any. Exits 1 when something failed.
 set -uo pipefail
 bin=$1 scenes=$2
 shift 2
 here=$(cd "$(dirname "$0")" && pwd)
 parts=("$@")
-[ ${#parts[@]} -gt 0 ] || parts=(tests python long pictures sanitizers stalls references bench viewer)
+[ ${#parts[@]} -gt 0 ] || parts=(tests python long pictures counters sanitizers stalls references bench viewer)
 export PERTEV_SCENES=$scenes
 status=0
 
@@ -42,6 +42,9 @@ for part in "${parts[@]}"; do
         run "$bin/pertev_tests" --device cuda --long --source-file="$files"
         ;;
     pictures) run "$here/compare_devices.py" "$bin/pertev" "$scenes" 1 16 64 ;;
+    counters)
+        if command -v cuobjdump >/dev/null; then run "$here/check_warp_counters.py" "$bin/pertev"; else echo "no cuobjdump"; fi
+        ;;
     sanitizers)
         for tool in memcheck racecheck initcheck synccheck; do
             run compute-sanitizer --tool "$tool" --error-exitcode 1 "$bin/pertev_tests" --device cuda \

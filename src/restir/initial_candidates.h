@@ -6,6 +6,7 @@
 // Source: Bitterli et al. 2020, section 3 and algorithm 3, with candidates of light sampling and one of BSDF sampling
 // weighted by the balance heuristic (Wyman et al., "A Gentle Introduction to ReSTIR", SIGGRAPH 2023 courses).
 
+#include "device/per_thread.h"
 #include "render/picture_view.h"
 #include "restir/light_reservoir.h"
 #include "restir/ris_selection.h"
@@ -34,7 +35,7 @@ struct SampleInitialCandidates {
         const SampleKey key = here.key(pixel);
         RisSelection selection = {sample_1d(here.sampler, key, kGroupSelectCandidate)};
         const float drawn = static_cast<float>(candidates);
-        for (uint32_t k = 0; k < candidates; ++k) {
+        for (uint32_t k = per_thread(0, receiver.position().x); k < candidates; ++k) {
             const SampleKey candidate = {key.stream, key.sample * candidates + k, key.seed};
             LightSample light;
             if (!sample_light<emitter_variant(kVariant), Choice>(scene.lights, receiver.light_context(),

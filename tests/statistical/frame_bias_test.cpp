@@ -12,6 +12,7 @@
 #include "scene/tangents/make_tangents.h"
 #include "session/session.h"
 #include "tests/support/flat_scenes.h"
+#include "tests/support/layered_balls.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/solid_scenes.h"
@@ -235,58 +236,8 @@ TEST_CASE("shared bounces at bent normals lose little light at grazing angles") 
     }
 }
 
-namespace {
-
-Material layered(const char* name, MaterialParameters parameters) {
-    parameters.kind = MaterialKind::MetallicRoughness;
-    return {parameters, name};
-}
-
-/// Eight balls before a wall of rough diffuse reflection, lit by an emitter above and a light beside the camera. Each
-/// ball has another lobe besides Lambert's and a plain reflection, and covers two blocks of the picture, one above the
-/// other.
-BiasScene layered_balls() {
-    const Material materials[] = {
-        layered("coat", {.base_color = {0.7f, 0.2f, 0.1f},
-                         .roughness = 0.6f,
-                         .coat_weight = 1,
-                         .coat_roughness = 0.1f,
-                         .coat_color = {0.9f, 0.7f, 0.5f}}),
-        layered("sheen", {.base_color = {0, 0, 0}, .fuzz_weight = 1, .fuzz_roughness = 0.4f}),
-        layered("fuzz", {.fuzz_model = FuzzModel::Zeltner,
-                         .base_color = {0, 0.1f, 0.3f},
-                         .fuzz_weight = 1,
-                         .fuzz_roughness = 0.6f}),
-        layered("film", {.base_color = {0.1f, 0.1f, 0.1f}, .roughness = 0.3f, .thin_film_weight = 1}),
-        layered("leaf", {.base_color = {0, 0, 0},
-                         .roughness = 0.5f,
-                         .diffuse_transmission_weight = 0.5f,
-                         .diffuse_transmission_color = {0.4f, 0.8f, 0.1f}}),
-        layered("retro", {.base_color = {0.5f, 0.4f, 0.1f}, .roughness = 0.4f, .specular_retroreflectivity = 0.8f}),
-        {{.base_color = {0.8f, 0.6f, 0.4f}, .base_diffuse_roughness = 1}, "clay"},
-        layered("frosted", {.base_color = {0.8f, 0.9f, 0.9f}, .roughness = 0.5f, .transmission_weight = 0.9f})};
-    BiasScene balls = {"layers", {}, {}};
-    for (int i = 0; i < 8; ++i) {
-        const Vec3 centre = {static_cast<float>(2 * (i % 4) - 3), i < 4 ? 1.5f : -1.5f, 0};
-        Mesh mesh = ball(centre, 0.9f);
-        for (const Vec3 p : mesh.positions) mesh.normals.push_back(normalize(p - centre));
-        add(balls.scene, std::move(mesh), materials[i]);
-    }
-    add(balls.scene, sheet({0, 0, -1.5f}, {6, 0, 0}, {0, 5, 0}),
-        {{.base_color = {0.5f, 0.6f, 0.7f}, .base_diffuse_roughness = 1}, "wall"});
-    add(balls.scene, sheet({1, 5, 3}, {1, 0, 0}, {0, 0.6f, -0.8f}),
-        {{.two_sided_emission = true, .base_color = {0, 0, 0}, .emission = {30, 28, 25}}, "lamp"});
-    balls.scene.lights.push_back(point_light({0.5f, 0.5f, 8}, {40, 40, 40}));
-    balls.camera.projection = Projection::Orthographic;
-    balls.camera.ortho_height = 6;
-    balls.camera.world_from_camera = look_at({0, 0, 8}, {0, 0, 0}, {0, 1, 0});
-    return balls;
-}
-
-} // namespace
-
 TEST_CASE("the filter and ReSTIR preserve the light of each kind of lobe") {
-    const BiasScene balls = layered_balls();
+    const LayeredBalls balls = layered_balls();
     Messages messages;
     const PreparedScene prepared = prepare_scene(balls.scene, {}, messages);
     Queue queue = requested_queue();
@@ -298,7 +249,7 @@ TEST_CASE("the filter and ReSTIR preserve the light of each kind of lobe") {
     const auto compare = [&](const std::string& part, const Image& mean, const Image& wanted, const Bias& most) {
         const Bias bias = bias_of(mean, wanted);
         CAPTURE(part);
-        print_bias(balls.name, part, bias);
+        print_bias("layers", part, bias);
         CHECK(std::abs(bias.whole) <= most.whole);
         CHECK(bias.of_block <= most.of_block);
     };

@@ -3,6 +3,7 @@
 // Local illumination without rays: emission, an ambient light, and light of each point, spot and directional light
 // that the diffuse and glossy lobes of the BSDF scatter. There are no shadows; mirrors and glass are black.
 
+#include "device/per_thread.h"
 #include "render/picture_view.h"
 #include "render/scatter_calls.h"
 
@@ -20,7 +21,7 @@ HD inline Rgb local_light(const LightSetView& lights, const Surface& surface, Ve
     if (surface.is_unlit || requested.max_depth == 0) return sum;
     sum += surface.bsdf.diffuse_albedo() * requested.ambient;
     if (surface.bsdf.has_delta_only()) return sum;
-    for (uint32_t k = 0; k < lights.punctual_count; ++k) {
+    for (uint32_t k = per_thread(0, surface.position.x); k < lights.punctual_count; ++k) {
         LightSample sample;
         if (!sample_punctual_light<emitter_variant(kVariant)>(lights, k, 1.0f, surface.position, sample)) continue;
         sum += evaluate_surface<kVariant>(surface, wo, sample.wi).f * sample.radiance;
