@@ -41,6 +41,12 @@ HD inline BsdfValue evaluate_surface(const Surface& surface, Vec3 wo, Vec3 wi, L
     assume_variant<kVariant>(surface.bsdf);
     return surface.evaluate(wo, wi, classes);
 }
+/// Returns Surface::diffuse_share() of `wi`.
+template <ShadingVariant kVariant>
+HD inline Rgb diffuse_share_at(const Surface& surface, Vec3 wo, Vec3 wi) {
+    assume_variant<kVariant>(surface.bsdf);
+    return surface.diffuse_share(wo, wi);
+}
 /// Returns the sample of Surface::sample.
 template <ShadingVariant kVariant>
 HD inline BsdfSample sample_surface(const Surface& surface, Vec3 wo, float u_lobe, Vec2 u) {

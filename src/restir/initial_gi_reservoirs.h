@@ -38,7 +38,7 @@ struct MakeInitialGiReservoirs {
         if (!seen.is_there) return; // stays in the sample
         const float transmittance = diffuse_transmittance<kVariant>(scene, taken.hit(), seen.wi);
         if (!(transmittance > 0)) return;
-        const Rgb share = surface.diffuse_share(-direction, seen.wi);
+        const Rgb share = diffuse_share_at<kVariant>(surface, -direction, seen.wi);
         if (is_black(share)) return;
         subtract_from_sample(pixel, share * found);
         taken.count = 1;

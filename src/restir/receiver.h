@@ -22,7 +22,7 @@ struct Receiver {
     HD BsdfValue evaluate(Vec3 wi, LobeClasses classes = kAllLobeClasses) const {
         return evaluate_surface<kVariant>(surface, wo, wi, classes);
     }
-    HD Rgb diffuse_share(Vec3 wi) const { return surface.diffuse_share(wo, wi); }
+    HD Rgb diffuse_share(Vec3 wi) const { return diffuse_share_at<kVariant>(surface, wo, wi); }
 };
 
 template <>

@@ -76,7 +76,8 @@ struct Bsdf {
 
     /// Fraction of eval() that diffuse lobes contribute, [0, 1].
     HD Rgb diffuse_share(Vec3 wo, Vec3 wi) const {
-        return is_diffuse() ? Rgb{1, 1, 1} : diffuse_share_of_lobes(*this, wo, wi);
+        if (is_diffuse()) return {1, 1, 1};
+        return is_called ? diffuse_share_of_lobes<true>(*this, wo, wi) : diffuse_share_of_lobes<false>(*this, wo, wi);
     }
     /// Returns whether sample() uses u_lobe.
     HD bool draws_lobe() const { return !is_diffuse() && (layer_count != 0 || base.kind != LobeKind::None); }
@@ -137,7 +138,11 @@ private:
             if (bsdf.layers[i].kind == LobeKind::Glass) return bsdf.layers[i].glass.ior;
         return 1;
     }
+    template <bool kIsCalled>
     HD_CALL static Rgb diffuse_share_of_lobes(Bsdf bsdf, Vec3 wo, Vec3 wi) {
+#if defined(__CUDA_ARCH__)
+        __builtin_assume(bsdf.is_called == kIsCalled);
+#endif
         const Rgb all = bsdf.eval(wo, wi), f = bsdf.evaluate(wo, wi, only(LobeClass::Diffuse)).f;
         return {all.r > 0 ? min(f.r / all.r, 1.0f) : 0.0f, all.g > 0 ? min(f.g / all.g, 1.0f) : 0.0f,
                 all.b > 0 ? min(f.b / all.b, 1.0f) : 0.0f};

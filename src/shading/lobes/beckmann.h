@@ -22,10 +22,10 @@ HD inline float scaled_erfc(float x) {
     const float t = 1.0f / (1.0f + 0.3275911f * x);
     return t * (0.254829592f + t * (-0.284496736f + t * (1.421413741f + t * (-1.453152027f + t * 1.061405429f))));
 }
-HD inline float erf(float x) { return copysign(1.0f - exp(-x * x) * scaled_erfc(abs(x)), x); }
+HD_CALL inline float erf(float x) { return copysign(1.0f - exp(-x * x) * scaled_erfc(abs(x)), x); }
 
 /// Inverse of erf(), for x in (-1, 1).
-HD inline float erf_inverse(float x) {
+HD_CALL inline float erf_inverse(float x) {
     float w = -log((1.0f - x) * (1.0f + x)), p;
     if (w < 5) {
         w -= 2.5f;

@@ -88,7 +88,7 @@ private:
     HD Rgb with_film(Rgb plain, float cosine, Rgb base_f0, float most) const {
         return has_film() ? beneath_film(plain, cosine, base_f0, most) : plain;
     }
-    HD Rgb beneath_film(Rgb plain, float cosine, Rgb base_f0, float most) const {
+    HD_CALL Rgb beneath_film(Rgb plain, float cosine, Rgb base_f0, float most) const {
         return plain + film.weight * (most * film_reflectance(cosine, film, ior_from_f0(base_f0)) - plain);
     }
     HD Rgb of_dielectric(float cosine) const {
