@@ -38,13 +38,19 @@ function(pertev_unity target batch)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${PERTEV_UNITY} UNITY_BUILD_BATCH_SIZE ${batch})
 endfunction()
 
+option(PERTEV_FEW_KERNEL_FILES "Compile up to 8 files of kernels at once, and those of shading too: a smaller program, for few cores" OFF)
+
 # Replaces the files of `list` by files of EXTENSION that include up to 24 of them each (for ptxas 4, because it has one
-# core for a file), since most of the time that such a file takes goes into headers and into functions that they share.
+# core for a file), since most of the time that such a file takes goes into headers and into functions that they share. Each file
+# with kernels of materials has 200 KB of tables for each architecture.
 function(pertev_gather name extension list)
   set(batch 0)
   set(batch_size 24)
   if(extension STREQUAL "cu" AND NOT PERTEV_ONLY_CHECKS_KERNELS)
     set(batch_size 4)
+    if(PERTEV_FEW_KERNEL_FILES)
+      set(batch_size 8)
+    endif()
   endif()
   set(files ${${list}})
   set(gathered_files "")
@@ -78,7 +84,11 @@ function(pertev_gather_kernels name list)
   set(extension cpp)
   if(PERTEV_COMPILES_KERNELS)
     set(extension cu)
-    list(FILTER files EXCLUDE REGEX "/(shade_|kernels/(lab/)?|hploc/|path_stages|film_stages)[^/]*$")
+    set(alone "shade_")
+    if(PERTEV_FEW_KERNEL_FILES)
+      set(alone "path/shade_(films|frames)\\.")
+    endif()
+    list(FILTER files EXCLUDE REGEX "/(${alone}|kernels/(lab/)?|hploc/|path_stages|film_stages|begin_and_trace)[^/]*$")
   elseif(PERTEV_HAS_CUDA)
     set_property(GLOBAL APPEND PROPERTY PERTEV_MODULES_WITH_KERNELS ${name})
     set_property(GLOBAL PROPERTY PERTEV_KERNELS_OF_${name} ${files})

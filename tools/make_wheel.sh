@@ -20,7 +20,7 @@ make_one() { # python kind
     local python=$1 kind=$2 raw=$work/raw tree folder options=(--config-settings=cmake.define.PERTEV_CUDA=OFF) libraries
     if [[ $kind == cuda ]]; then
         export PERTEV_WHEEL_CUDA=true CUDAFLAGS="--compress-mode=size ${CUDAFLAGS:-}"
-        options=(--config-settings=cmake.define.PERTEV_CUDA=ON --config-settings=cmake.define.PERTEV_WERROR=OFF # ptxas warns of bounds that some GPUs lack
+        options=(--config-settings=cmake.define.PERTEV_CUDA=ON --config-settings=cmake.define.PERTEV_FEW_KERNEL_FILES=ON --config-settings=cmake.define.PERTEV_WERROR=OFF # ptxas warns of bounds that some GPUs lack
             "--config-settings=cmake.define.CMAKE_CUDA_ARCHITECTURES=${CUDAARCHS:-75-real;80-real;90-real;100-real;120-real}")
     fi
     rm -rf "$raw" "$work/env"
