@@ -72,7 +72,7 @@ std::optional<PythonResult> PythonSession::next(Sink& sink) {
     const FrameCamera camera = {*setup.camera, setup.sequence};
     RenderedFrame rendered = render_frame(*frame_, {camera, *setup.moving, *record_, session}, sink);
     if (rendered.result.samples < record_->settings.samples) {
-        cut_.reset(); // the cut has ended the history
+        if (options_.real_time) cut_.reset(); // the cut has ended the history
         sink.check();
         throw Error(ErrorCode::Interrupted, "interrupted before the frame was complete");
     }

@@ -4,7 +4,7 @@ MUTATIONS = [
     ("the history of ReSTIR counts as much where light has changed", "statistical/restir_motion",
      ("src/restir/find_neighbours.h", "if (change.share != nullptr) {", "if (false) {")),
     ("what other lobes than diffuse ones scatter of a first bounce is shared, too", "statistical/frame_bias",
-     ("src/restir/initial_gi_reservoirs.h", "const Rgb share = surface.diffuse_share(-direction, seen.wi);", "const Rgb share = grey(1);")),
+     ("src/restir/initial_gi_reservoirs.h", "const Rgb share = diffuse_share_at<kVariant>(surface, -direction, seen.wi);", "const Rgb share = grey(1);")),
     ("stored receivers look to the front of their triangles", "unit/receiver",
      ("src/restir/receiver.h", "dot(wo, normal) > 0 ? normal : -normal;", "normal;")),
     ("stored receivers do not bend light at the terminator", "unit/receiver",

@@ -64,7 +64,8 @@ struct AccumulateSignals {
                 mirrored = find_taps(before, cameras, behind.pixel, 0, normal, kFlat, object);
             }
             if (has_gloss && !(mirrored.sum > kEnoughWeight)) {
-                longest_gloss = min(longest_gloss, frames_of_lobe(alpha_of(guide), frame.hit[pixel]));
+                const float frames = frames_of_lobe(cameras, scene, alpha_of(guide), frame.hit[pixel]);
+                longest_gloss = min(longest_gloss, max(frames, 1.0f));
             }
         }
         const Float4 diffuse = limited(signals.diffuse, at);
@@ -149,13 +150,6 @@ private:
             if (object_of(before.guide[tap]) == kNoHit) most = max(most, before.diffuse[tap].w);
         }
         return min(most + 1.0f, static_cast<float>(longest));
-    }
-
-    /// Number of frames in which a camera with constant motion passes half a lobe of this width; meanwhile the
-    /// reflection that it sees changes.
-    HD float frames_of_lobe(float alpha, Float4 hit) const {
-        const float turn = view_turn(cameras.now, cameras.before, point_at(scene.instances, scene.meshes, hit));
-        return turn < 0 ? kInfinity : max(0.5f * alpha / max(turn, 1e-6f), 1.0f);
     }
 
     HD static float ratio_of(float was, float is) { return was > 1e-12f ? is / was : 1.0f; }

@@ -48,7 +48,8 @@ struct ReprojectHistory {
         if (!has_gloss) return;
         if (const Taps of_gloss = known(before.gloss); of_gloss.sum > kEnoughWeight) {
             Float4 gloss = mean_of_taps(of_gloss, cameras, before.gloss);
-            gloss.w = min(gloss.w, samples * frames_of_lobe(abs(guide.albedo[pixel].w), hit));
+            const float frames = frames_of_lobe(cameras, scene, abs(guide.albedo[pixel].w), hit);
+            gloss.w = min(gloss.w, samples * max(frames - 1.0f, 0.0f)); // one of the frames is the present one
             to.gloss[pixel] = gloss;
             to.variances[pixel].y = variance_of_taps(of_gloss, true);
         }
@@ -67,11 +68,6 @@ private:
             weight += taps.weights[k];
         }
         return weight > 0 ? sum / weight : EstimateVariance::kUnknown;
-    }
-    /// Number of frames before this one in which a camera with constant motion passes half a lobe of this width.
-    HD float frames_of_lobe(float alpha, Float4 hit) const {
-        const float turn = view_turn(cameras.now, cameras.before, point_at(scene.instances, scene.meshes, hit));
-        return turn < 0 ? kInfinity : max(0.5f * alpha / max(turn, 1e-6f) - 1.0f, 0.0f);
     }
 };
 

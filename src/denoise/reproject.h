@@ -23,6 +23,13 @@ HD inline Reprojection reproject_virtual(const FrameCameras& frames, Vec2 centre
     return {then.pixel, then.depth};
 }
 
+/// Returns the number of frames in which a camera with constant motion passes half a lobe of width `alpha` at a hit;
+/// meanwhile the reflection that it sees there changes.
+HD inline float frames_of_lobe(const FrameCameras& cameras, const SceneView& scene, float alpha, Float4 hit) {
+    const float turn = view_turn(cameras.now, cameras.before, point_at(scene.instances, scene.meshes, hit));
+    return turn < 0 ? kInfinity : 0.5f * alpha / max(turn, 1e-6f);
+}
+
 /// Up to four pixels of the previous frame around a position, with their weights; the sum is 0 if none matches.
 struct Taps {
     uint32_t first;   // upper left pixel, which need not match

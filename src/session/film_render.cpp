@@ -336,7 +336,7 @@ DenoisedPicture FilmRender::denoise_shared() {
     PERTEV_CHECK(gathered != nullptr);
     DenoiserState state(gathered->byte_count() / sizeof(uint32_t));
     gathered->read(0, std::as_writable_bytes(std::span(state)));
-    if (settings_.has_history()) {
+    if (settings_.has_history()) { // it ends with the first device: a fault there ends the frames
         if (begun_number_ != number_) steps_->begin_restored(camera_, settings_, scene_before());
         begun_number_ = number_;
         steps_->restore(state);

@@ -3,6 +3,7 @@
 import base64
 import json
 import pathlib
+import signal
 import struct
 import subprocess
 import sys
@@ -10,6 +11,7 @@ import tempfile
 import threading
 import unittest
 
+import numpy
 import pertev
 
 from device_argument import DEVICE
@@ -91,6 +93,21 @@ class Sessions(unittest.TestCase):
     def test_frames_may_be_ordinary_pictures(self):
         frames = [frame.hash for frame in pertev.Session(self.moves, real_time=False, spp=2, fps=2, frames="1-2", **SMALL)]
         self.assertEqual(frames, frames_of_program(self.moves, "--frames", "1-2", "--fps", "2", "--spp", "2"))
+
+    def test_an_interrupted_frame_is_made_again_with_its_history(self):
+        given = {"real_time": False, "denoise": "svgf", "frames": "0-1", "spp": 64, "size": (64, 64), "device": DEVICE}
+        whole = [frame.color for frame in pertev.Session("cornell-box", turntable=40, **given)]
+        session = pertev.Session("cornell-box", turntable=40, **given)
+        next(session)
+        old = signal.signal(signal.SIGALRM, signal.default_int_handler)
+        self.addCleanup(signal.signal, signal.SIGALRM, old)
+        with self.assertRaises(KeyboardInterrupt):
+            signal.setitimer(signal.ITIMER_REAL, 0.005)
+            next(session)
+        self.assertEqual(session.frame, 1)
+        numpy.testing.assert_array_equal(numpy.asarray(next(session).color), numpy.asarray(whole[1]))
+        without = list(pertev.Session("cornell-box", turntable=40, **{**given, "frames": "1-1"}))[0]
+        self.assertFalse(numpy.array_equal(numpy.asarray(without.color), numpy.asarray(whole[1])))
 
     def test_reset_restarts_the_sequence(self):
         session = pertev.Session("cornell-box", **SMALL)

@@ -95,6 +95,16 @@ TEST_CASE("pbrt: a mixture of images by a number or an image is an image") {
     CHECK(by_image.left_out == std::vector<std::string>{});
     CHECK(by_image.at(0.25f, 0.5f) == doctest::Approx(0.25).epsilon(2e-2));
     CHECK(by_image.at(0.625f, 0.5f) == doctest::Approx(0.6).epsilon(2e-2));
+    // None or all of the second is one of the images as it is.
+    for (const auto& [amount, width] : {std::pair("0", 2u), std::pair("1", 4u)}) {
+        const CombinedScene whole = read_combined(images +
+                                                  "Texture \"t\" \"spectrum\" \"mix\" \"texture tex1\" \"a\" "
+                                                  "\"texture tex2\" \"b\" \"float amount\" " +
+                                                  amount + "\n");
+        CHECK(whole.left_out == std::vector<std::string>{});
+        const auto image = static_cast<std::size_t>(whole.material.base_color_texture.image);
+        CHECK(whole.scene.images.at(image).rgba_float.width == width);
+    }
 }
 
 TEST_CASE("pbrt: checks of an image and a colour are an image") {

@@ -72,7 +72,6 @@ Clipping find_clipping(const Scene& scene, const Camera& camera, float near, flo
         if (found.is_near || box.lo.z > near || box.hi.z < 0) continue;
         for (std::size_t i = 0; i + 2 < mesh.indices.size() && !found.is_near; i += 3) {
             const uint32_t* const of = mesh.indices.data() + i;
-            if (std::max({of[0], of[1], of[2]}) >= mesh.positions.size()) continue;
             const Vec3 corners[3] = {in_camera(mesh.positions[of[0]]), in_camera(mesh.positions[of[1]]),
                                      in_camera(mesh.positions[of[2]])};
             found.is_near = may_meet(space, corners);

@@ -214,6 +214,9 @@ TextureValue Textures::checkerboard(bool is_color, const DoubleTransform& world_
 
 TextureValue Textures::mixture(const TextureValue& a, const TextureValue& b, const TextureValue& amount,
                                const Parameters& parameters) {
+    const Rgb share_of_b = amount.has_image() ? grey(0.5f) : amount.factor;
+    if (share_of_b == grey(0)) return a;
+    if (share_of_b == grey(1)) return b;
     const int images = int(a.has_image()) + int(b.has_image()) + int(amount.has_image());
     const auto left_out = [&](const char* what) { context_.sink.leave_out({parameters.location(), what}); };
     if (a.by_normal || b.by_normal || amount.by_normal)
