@@ -1,12 +1,13 @@
 // Writes the tables of lobes into the folder that it is given: energy_table_data.h, which says how much energy GGX
 // microfacets lose to single scattering, beckmann_table_data.h, the same of Beckmann's, stretched_table_data.h, of both
-// if they are stretched (stretched_integrals.h), and sheen_table_data.h, the directional albedo of the sheen lobe. The
-// numbers stand in *.inl, which only lobe_table_data.cpp and device code read.
+// if they are stretched (stretched_integrals.h), sheen_table_data.h, the directional albedo of the sheen lobe, and
+// coated_table_data.h, what a coat returns to metal (coated_integrals.h). The numbers stand in *.inl, which only
+// lobe_table_data.cpp and device code read.
 //
-// The build runs it. Axes and meaning are stated in src/shading/lobes/energy_tables.h, stretched_tables.h and
-// sheen_lobe.h, which must agree with this file. Doubles leave eight digits to spare, so the values do not depend on
-// the compiler or on libm; other text than that of kHash is refused. tests/unit/lobe_tables_test.cpp holds the floats
-// that a program reads of it.
+// The build runs it. Axes and meaning are stated in src/shading/lobes/energy_tables.h, stretched_tables.h,
+// coated_table.h and sheen_lobe.h, which must agree with this file. Doubles leave eight digits to spare, so the values
+// do not depend on the compiler or on libm; other text than that of kHash is refused. tests/unit/lobe_tables_test.cpp
+// holds the floats that a program reads of it.
 //
 // Each value is an integral by a product rule: Gauss-Legendre along one axis, and midpoints about the other, along
 // which the integrand is even and periodic. Energy is integrated over the distribution of visible normals (Heitz 2018;
@@ -28,6 +29,8 @@
 #include <tbb/parallel_for.h>
 
 #include "beckmann_integrals.h"
+#include "coated_integrals.h"
+#include "ggx_integrals.h"
 #include "stretched_integrals.h"
 
 namespace {
@@ -37,94 +40,7 @@ constexpr int kBeckmannRoughnessNodes = 20, kBeckmannIorNodes = 14;
 constexpr double kAlphaMin = 1e-3, kIorMin = 1.1, kIorMax = 3, kOvershoot = 2e-4;
 constexpr int kSheenMuNodes = 24, kSheenRoughnessNodes = 16;
 constexpr double kSheenRoughnessMin = 0.2;
-constexpr uint64_t kHash = 0x169d5909efe2f5e9; // hash of the numbers of all tables
-
-constexpr int kHeights = 96, kAngles = 48; // sizes of the rule over the cap of visible normals
-
-struct Angles {
-    std::array<double, kAngles> cosine, sine;
-    Angles() {
-        for (int j = 0; j < kAngles; ++j) {
-            cosine[j] = std::cos((j + 0.5) / kAngles * pi);
-            sine[j] = std::sin((j + 0.5) / kAngles * pi);
-        }
-    }
-};
-
-double smith_lambda(double z, double alpha) {
-    const double z2 = std::max(z * z, 1e-24);
-    return 0.5 * (std::sqrt(1 + alpha * alpha * std::max(0.0, 1 - z2) / z2) - 1);
-}
-
-/// The visible normals of one view, by height and angle, which all indices of refraction share.
-struct View {
-    struct Row {
-        std::array<double, kAngles> z, cosine,
-            reflected; // about the normal; between normal and view; masking of reflection
-        double weight;
-    };
-    double mu, alpha, lambda;
-    std::array<Row, kHeights> rows;
-
-    View(double mu_of_view, double alpha_of_view)
-        : mu(mu_of_view), alpha(alpha_of_view), lambda(smith_lambda(mu, alpha)) {
-        static const std::vector<Node> heights = gauss_legendre(kHeights);
-        static const Angles angles;
-        const double across = std::sqrt(std::max(0.0, 1 - mu * mu)), length = std::hypot(across * alpha, mu);
-        const double wx = across * alpha / length, wz = mu / length;
-        for (int i = 0; i < kHeights; ++i) {
-            const double h = heights[i].x, t = h * h * (3 - 2 * h) * (1 + wz); // nodes gather at both ends of the cap
-            const double s = std::sqrt(t * (2 - t));
-            rows[i].weight = heights[i].weight * 6 * h * (1 - h) / kAngles;
-            for (int j = 0; j < kAngles; ++j) {
-                const double x = alpha * (s * angles.cosine[j] + wx), y = alpha * s * angles.sine[j], z = 1 - t + wz;
-                const double norm = std::sqrt(x * x + y * y + z * z);
-                rows[i].z[j] = z / norm;
-                rows[i].cosine[j] = std::clamp((across * x + mu * z) / norm, 0.0, 1.0);
-                rows[i].reflected[j] = masking(2 * rows[i].cosine[j] * rows[i].z[j] - mu);
-            }
-        }
-    }
-
-    double masking(double z) const {
-        const double length = std::sqrt(z * z + alpha * alpha * std::max(0.0, 1 - z * z)); // z (1 + 2 Lambda)
-        return z > 0 ? (2 + 2 * lambda) * z / ((1 + 2 * lambda) * z + length) : 0;
-    }
-
-    /// Returns the integral of `of(cosine, z, masking of reflection)` over the visible normals.
-    template <class Function>
-    double integrate(const Function& of) const {
-        std::array<double, kAngles> sums{}; // side by side, for the vectoriser
-        for (const Row& row : rows)
-            for (int j = 0; j < kAngles; ++j) sums[j] += row.weight * of(row.cosine[j], row.z[j], row.reflected[j]);
-        double sum = 0;
-        for (const double s : sums) sum += s;
-        return sum;
-    }
-
-    /// The energy of one bounce off a reflector with F = 1.
-    double reflected() const {
-        return integrate([](double, double, double masked) { return masked; });
-    }
-    /// Reflected light weighted by Schlick's (1 - cos)^5.
-    double reflected_by_schlick() const {
-        return integrate([](double c, double, double masked) { return masked * std::pow(1 - c, 5); });
-    }
-    /// The energy of reflection and refraction; `eta` is the far side's index over the near side's.
-    double scattered(double eta) const {
-        const double inverse = 1 / eta, inverse2 = inverse * inverse, both = 1 + 2 * lambda, most = 2 + 2 * lambda;
-        return integrate([&](double c, double z, double masked) {
-            const double t = std::sqrt(std::max(0.0, 1 - (1 - c * c) * inverse2));
-            const double s = c + eta * t, p = eta * c + t, sp = s * p;
-            const double passed = 2 * eta * c * t * (s * s + p * p),
-                         of = sp * sp; // Fresnel's transmittance is passed / of
-            const double down = std::max(0.0, t * z - (c * z - mu) * inverse);
-            const double length = both * down + std::sqrt(down * down + alpha * alpha * std::max(0.0, 1 - down * down));
-            return masked +
-                   passed * (most * down - masked * length) / (of * length); // with masking(down), in one division
-        });
-    }
-};
+constexpr uint64_t kHash = 0xe6b60f01692adf87; // hash of the numbers of all tables
 
 double mu_at(double x, double alpha) {
     const double p = x * (kMuNodes - 1);
@@ -441,6 +357,65 @@ TableGroup stretched_table() {
              {"float", "stretched_beckmann_average_lost", beckmann.averages}}};
 }
 
+/// Returns what coats return to metals, from the tables of what metals lose.
+TableGroup coated_table(const TableGroup& energy) {
+    const Values &lost = energy.tables[0].values, &schlick = energy.tables[1].values,
+                 &average = energy.tables[2].values;
+    const auto r_of = [](double alpha) {
+        return (std::sqrt(alpha) - std::sqrt(kAlphaMin)) / (1 - std::sqrt(kAlphaMin));
+    };
+    const auto average_lost = [&](double alpha) {
+        return alpha * interpolate(average.data(), kAverageNodes, std::sqrt(std::max(r_of(alpha), 0.0)));
+    };
+    const auto scattered = [&](double mu, double alpha) {
+        static const std::vector<Node> far = gauss_legendre(48);
+        const View view(mu, alpha);
+        const Values row = row_at(lost.data(), r_of(alpha));
+        const auto lost_at = [&](double cosine) { return interpolate(row.data(), kMuNodes, x_at(cosine, alpha)); };
+        const double more = lost_at(mu) / average_lost(alpha), once = (1 - lost_at(mu)) / view.reflected();
+        std::vector<Node> light;
+        for (int i = 0; i < kViewHeights; ++i)
+            for (int j = 0; j < kViewAngles; ++j) {
+                const View::Row& at = view.rows[i];
+                const double cosine = 2 * at.cosine[j] * at.z[j] - mu;
+                if (cosine > 0) light.push_back({std::min(cosine, 1.0), once * at.weight * at.reflected[j]});
+            }
+        for (const Node& node : far) {
+            const double cosine = node.x * node.x;
+            light.push_back({cosine, more * 4 * node.x * cosine * node.weight * lost_at(cosine)});
+        }
+        return light;
+    };
+    const auto coat_albedo = [&](double roughness) {
+        constexpr double kF0 = 0.04;
+        const double alpha = roughness * roughness;
+        const bool is_rough = alpha >= kAlphaMin;
+        Values lost_row, schlick_row;
+        double average_of_coat = 0;
+        if (is_rough) {
+            lost_row = row_at(lost.data(), r_of(alpha));
+            schlick_row = row_at(schlick.data(), r_of(alpha));
+            average_of_coat = average_lost(alpha);
+        }
+        return [=](double cosine) {
+            double e = 0, weight = std::pow(1 - cosine, 5);
+            if (is_rough) {
+                const double x = x_at(std::max(cosine, 1e-9), alpha);
+                e = interpolate(lost_row.data(), kMuNodes, x);
+                weight = std::max(weight + 2 * interpolate(schlick_row.data(), kMuNodes, x) - 1, 0.0);
+            }
+            const double f = kF0 + (1 - kF0) / 21;
+            const double of_further = f * f * (1 - average_of_coat) / (1 - f * average_of_coat);
+            return ((1 - e) * (kF0 + (1 - kF0) * weight) + e * of_further) / (1 - kF0);
+        };
+    };
+    CoatedTable table(scattered, coat_albedo);
+    return {"coated_table",
+            fmt::format("inline constexpr int kCoatNodes = {}, kMetalNodes = {}, kMuNodes = {};\n",
+                        CoatedTable::kCoatNodes, CoatedTable::kMetalNodes, CoatedTable::kMuNodes),
+            {{"uint16_t", "returned_by_coat", quantised(std::move(table.returned))}}};
+}
+
 } // namespace
 
 int main(int count, char** arguments) {
@@ -449,7 +424,8 @@ int main(int count, char** arguments) {
         return 2;
     }
     const std::string folder = std::string(arguments[1]) + "/";
-    const TableGroup groups[] = {energy_tables(), sheen_table(), beckmann_table(), stretched_table()};
+    const TableGroup energy = energy_tables();
+    const TableGroup groups[] = {energy, sheen_table(), beckmann_table(), stretched_table(), coated_table(energy)};
     std::string all_numbers, definitions = kOrigin;
     for (const TableGroup& group : groups) {
         for (const Table& table : group.tables) all_numbers += table.numbers();

@@ -211,6 +211,8 @@ private:
     }
     HD_CALL static BsdfValue evaluate_stack(const Bsdf& bsdf, Vec3 wo, Vec3 wi, LobeClasses classes) {
         LayerTransmittance transmittance;
+        (bsdf.base.kind == LobeKind::Conductor || bsdf.base.kind == LobeKind::Metal ? bsdf.base : bsdf.layers[0])
+            .describe_metal(transmittance);
         return bsdf.evaluate_down_to(0, wo, wi, classes, transmittance);
     }
     HD_CALL static BsdfValue evaluate_copy(Bsdf bsdf, Vec3 wo, Vec3 wi, LobeClasses classes) {

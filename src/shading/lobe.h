@@ -227,6 +227,34 @@ struct Lobe {
         }
         return {};
     }
+    /// Lets coats on the lobe return light to its metal.
+    HD void describe_metal(LayerTransmittance& transmittance) const {
+        float alpha = 0, share = 1;
+        switch (kind) {
+        case LobeKind::Conductor:
+            alpha = conductor.alpha;
+            break;
+        case LobeKind::Metal:
+            alpha = metal.microfacets.even_width();
+            break;
+        case LobeKind::Schlick:
+            alpha = schlick.alpha;
+            share = schlick.metallic;
+            break;
+        case LobeKind::Specular:
+            alpha = reflection.alpha;
+            share = reflection.metallic;
+            break;
+        case LobeKind::Filmed:
+            alpha = filmed.surface.microfacets.even_width();
+            share = filmed.color_b_metallic.high();
+            break;
+        default:
+            break;
+        }
+        transmittance.metal_alpha = alpha;
+        transmittance.metal_share = alpha >= kSmoothAlpha ? share : 0.0f;
+    }
     /// Value and density that the lobe adds under `transmittance`; a layer then moves `transmittance` beneath itself.
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, LayerTransmittance& transmittance) const {
         switch (kind) {

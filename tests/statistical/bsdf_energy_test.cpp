@@ -238,48 +238,53 @@ TEST_CASE("bases beneath layers lose little light, and sheen alone reflects at m
     CHECK(alone.b < 1.001);
 }
 
-TEST_CASE(
-    "a coat on a white mirror returns all light to 0.3 %, and on rough white metal loses what it reflects downwards") {
-    // A layer leaves at most 1 - max(A(o), A(i)) to what is beneath, with its albedo A (LayerTransmittance::pass). Of
-    // the light that white metal scatters from o to where the coat's albedo is larger, the difference is lost, though a
-    // real coat would return it to the metal again. Neither the coat's tables nor its own light lose more than 0.3 %.
-    // No function of both albedos alone can leave more: a base that scatters o to one direction and that one to o would
-    // gain light from one of them. On metal alone a lobe l(o) l(i) / l_avg with what is lost, l, could return it. By
-    // measurement l is strength (1 - f0) times a function of both widths and the cosine, within 3 % up to a coat of
-    // roughness 0.2 (at an index of 2 and at half the strength). A coat does not know the width beneath it.
-    double least = 1;
-    for (const float roughness : {0.05f, 0.2f, 0.5f, 1.0f}) {
-        const SchlickLobe coat = {grey(0), 0, roughness * roughness, f0_from_ior(1.5f)};
-        const SchlickLobe::Average average = coat.make_average();
-        const auto albedo = [&](float cosine) { return static_cast<double>(coat.albedo_at(cosine, average).coat); };
-        for (const float cosine : kCosines) {
-            const Vec3 wo = direction_at(cosine);
-            const Bsdf alone = make_coated(Bsdf{}, 1, roughness, 1.5f);
-            const Bsdf mirror = make_coated(make_conductor(grey(0), grey(2), 0), 1, roughness, 1.5f);
-            const double all = mean_weight(alone, wo, 1 << 15).g + static_cast<double>(mirror.specular(wo).mirror.g);
-            INFO("coat of roughness " << roughness << " at cosine " << cosine << ", on a mirror " << all);
-            CHECK(all > 0.997);
-            CHECK(all < 1.001);
-            for (const float width : {0.2f, 0.35f, 0.6f, 1.0f}) {
-                const Bsdf metal = make_conductor(grey(0), grey(2), width);
-                double lost = 0;
-                constexpr uint32_t kPoints = 1 << 12;
-                for (uint32_t i = 0; i < kPoints; ++i) {
-                    const SamplePoint p = even_point(i, kPoints);
-                    const BsdfSample s = metal.sample(wo, p.lobe, p.u);
-                    if (!(s.pdf > 0)) continue;
-                    lost += static_cast<double>(s.weight.g) * std::max(albedo(s.wi.z) - albedo(cosine), 0.0) / kPoints;
-                }
-                const double coated = mean_weight(make_coated(metal, 1, roughness, 1.5f), wo, 1 << 13).g;
-                INFO("on metal of roughness " << width << ": " << coated << ", lost " << lost);
-                CHECK(coated + lost == doctest::Approx(1).epsilon(0.002)); // at most 0.004 off
-                least = std::min(least, coated);
+TEST_CASE("a coat on a white mirror returns all light to 0.3 %, and so it does on rough white metal of any form") {
+    // The coat's own tables lose up to 0.3 %. Without what coated_table.h returns, rough metal would lose 5.5 %.
+    const struct {
+        const char* name;
+        Bsdf (*make)(float roughness);
+    } metals[] = {{"complex index", [](float r) { return make_conductor(grey(0), grey(2), r); }},
+                  {"Schlick", [](float r) { return make_metallic_roughness(grey(1), 1, r, 1.5f); }},
+                  {"F82", [](float r) {
+                       return make_reflection(
+                           {.base_color = grey(1), .metallic = 1, .roughness = r, .metal_tint = grey(0.999f)});
+                   }}};
+    const Bsdf mirror = make_conductor(grey(0), grey(2), 0);
+    for (const float strength : {1.0f, 0.5f})
+        for (const float roughness : {0.0f, 0.05f, 0.2f, 0.5f, 1.0f})
+            for (const float cosine : kCosines) {
+                const Vec3 wo = direction_at(cosine);
+                const double alone = mean_weight(make_coated(Bsdf{}, strength, roughness, 1.5f), wo, 1 << 14).g;
+                const double beneath =
+                    static_cast<double>(make_coated(mirror, strength, roughness, 1.5f).specular(wo).mirror.g -
+                                        make_coated(Bsdf{}, strength, roughness, 1.5f).specular(wo).mirror.g);
+                INFO("coat of " << strength << ", roughness " << roughness << " at cosine " << cosine);
+                CHECK(alone + beneath > 0.997);
+                CHECK(alone + beneath < 1.001);
+                for (const float width : {0.1f, 0.2f, 0.35f, 0.6f, 1.0f})
+                    for (const auto& metal : metals) {
+                        if (strength < 1 && &metal != metals) continue;
+                        const Bsdf coated = make_coated(metal.make(width), strength, roughness, 1.5f);
+                        const double light = mean_weight(coated, wo, 1 << 12).g;
+                        INFO(std::string(metal.name) << " of roughness " << width << ": " << light);
+                        CHECK(light > (width > 0.15f ? 0.9965 : cosine > 0.01f ? 0.99 : 0.98));
+                        CHECK(light < 1.0015); // 2^12 points err by up to 1e-3
+                    }
             }
-        }
-    }
-    INFO("least " << least);
-    CHECK(least > 0.945);
-    CHECK(least < 0.96); // a mended coat is noticed, and then the document (docs/materials.md) is wrong
+    // An index of 2 and a coat on half a metal, which gets half of it, do not gain light either.
+    for (const float roughness : {0.05f, 0.3f, 0.75f})
+        for (const float width : {0.1f, 0.35f, 0.75f})
+            for (const float cosine : kCosines) {
+                const Bsdf bases[] = {make_conductor(grey(0), grey(2), width),
+                                      make_metallic_roughness(grey(1), 0.5f, width, 1.5f)};
+                for (const Bsdf& base : bases) {
+                    const double light =
+                        mean_weight(make_coated(base, 1, roughness, 2), direction_at(cosine), 1 << 12).g;
+                    INFO("coat of roughness " << roughness << " on " << width << " at cosine " << cosine);
+                    CHECK(light > 0.96);
+                    CHECK(light < 1.0015); // 2^12 points err by up to 1e-3
+                }
+            }
 }
 
 TEST_CASE("diffuse and glossy light add up to all light, and each equals its lobe's light") {

@@ -13,6 +13,7 @@
 #include "math/frame.h"
 #include "math/portable_math.h"
 #include "shading/lobes/coat_absorption.h"
+#include "shading/lobes/coated_table.h"
 #include "shading/lobes/filmed_lobe.h"
 #include "shading/lobes/schlick_lobe.h"
 #include "shading/lobes/unit_pair.h"
@@ -88,6 +89,13 @@ struct CoatLobe {
                      transmittance.reach * lobe.pdf_of(once, i.z, shares.specular, shares.more)};
         }
         if (is_tinted()) transmittance.tint = transmittance.tint * tint_of(wo, wi, o.z, i.z, max(at_o.coat, at_i.coat));
+        if (transmittance.metal_share > 0 && !is_bent()) {
+            const float passed = max(1.0f - strength * max(at_o.coat, at_i.coat), 1e-6f);
+            const float scale = transmittance.metal_share * strength * returned_by_coat_scale(alpha, f0);
+            const float metal = transmittance.metal_alpha;
+            transmittance.returned *=
+                1.0f + scale * returned_by_coat(o.z, alpha, metal) * returned_by_coat(i.z, alpha, metal) / passed;
+        }
         transmittance.pass(strength * at_o.coat, strength * at_i.coat, shares.beneath);
         return value;
     }

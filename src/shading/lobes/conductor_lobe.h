@@ -35,7 +35,7 @@ struct ConductorLobe {
         const float lost_o = metal_lost(o.z, alpha), lost_i = metal_lost(i.z, alpha);
         const float lost = metal_average_lost(alpha), cosine = i.z * kInvPi;
         const Rgb more = multiple_scattering_tint(fresnel_conductor_average(eta, k), lost);
-        return {transmittance.light *
+        return {transmittance.light_on_metal() *
                     (once.f * fresnel_conductor(once.cos_h, eta, k) + (cosine * lost_o * lost_i / lost) * more),
                 transmittance.reach * ((1.0f - lost_o) * once.pdf + lost_o * pdf_metal_lost(i.z, alpha))};
     }

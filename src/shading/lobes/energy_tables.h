@@ -38,9 +38,9 @@ HD inline CellOf<T> make_cell(T x, int nodes) {
 }
 
 template <class T>
-HD inline CellOf<T> mu_cell(T mu, T alpha) {
+HD inline CellOf<T> mu_cell(T mu, T alpha, int nodes = kMuNodes) {
     const T root = sqrt(mu);
-    CellOf<T> cell = make_cell(root / (root + safe_sqrt(alpha * (1.0f - mu))), kMuNodes);
+    CellOf<T> cell = make_cell(root / (root + safe_sqrt(alpha * (1.0f - mu))), nodes);
     const MaskOf<T> is_first = cell.node == 0u; // the curves are linear in mu there
     cell.fraction = select(is_first, cell.fraction * cell.fraction, cell.fraction);
     return cell;
@@ -57,8 +57,8 @@ HD inline CellOf<T> roughness_cell(T alpha, int nodes = kRoughnessNodes) {
 }
 /// Cell of the averages, which change fastest at the least roughness.
 template <class T>
-HD inline CellOf<T> average_cell(T alpha) {
-    return make_cell(safe_sqrt(roughness_position(alpha)), kAverageNodes);
+HD inline CellOf<T> average_cell(T alpha, int nodes = kAverageNodes) {
+    return make_cell(safe_sqrt(roughness_position(alpha)), nodes);
 }
 HD inline Cell ior_cell(float ior, int nodes = kIorNodes) {
     constexpr float lowest = 0.21821789f, highest = 0.70710678f; // values for kIorMin and kIorMax

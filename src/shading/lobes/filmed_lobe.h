@@ -58,7 +58,7 @@ struct FilmedLobe {
         if (!is_smooth() && wo.z * wi.z > 0) {
             const GgxReflection once = widths.evaluate_reflection(o, i);
             const Rgb more = (i.z * kInvPi * at_o.lost * at_i.lost / max(average.lost, 1e-9f)) * average.more;
-            value = {transmittance.light * (once.f * reflectance(once.cos_h) + more),
+            value = {transmittance.light_on_metal() * (once.f * reflectance(once.cos_h) + more),
                      transmittance.reach * (shares.specular * once.pdf + shares.more * widths.pdf_lost_lobe(i.z))};
         }
         transmittance.pass(at_o.coat, at_i.coat, shares.beneath);

@@ -25,6 +25,10 @@ struct LayerTransmittance {
     float reach = 1;      // probability that sample() gets this deep
     Rgb tint = {1, 1, 1}; // factor on values of all lobes beneath, which their stack multiplies, [0, 1]
 
+    // Coats return light to rough metal (coated_table.h), if their stack says how wide it is.
+    float metal_alpha = 0, metal_share = 0; // its GGX width, and its share of what it reflects; 0 without one
+    float returned = 1;                     // factor on `light` for it, at least 1
+
     // From a layer that lies only on a diffuse base: the base is scaled by near far / average, so that all light that
     // the layer transmits is scattered (Kelemen & Szirmay-Kalos 2001).
     float near = 1, far = 1, average = 1;
@@ -32,6 +36,8 @@ struct LayerTransmittance {
     /// Factor on light that lobes beneath both kinds scatter along single directions or into lobes: reciprocal, and at
     /// most the transmittance from either side.
     HD float light_of_delta() const { return light * min(near, far); }
+
+    HD float light_on_metal() const { return light * returned; }
 
     /// Passes a layer with albedo `at_o` and `at_i` that sampling passes with probability `p_beneath`. The factor is
     /// reciprocal and at most 1 - at_o, so no light is gained whatever lies beneath (KHR_materials_sheen).

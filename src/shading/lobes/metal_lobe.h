@@ -35,7 +35,7 @@ struct MetalLobe {
                  multiple_scattering_tint(fresnel_conductor_average(eta, k), lost);
             pdf = (1.0f - lost_o) * once.pdf + lost_o * widths.pdf_lost_lobe(i.z);
         }
-        return {transmittance.light * (weight * f), transmittance.reach * pdf};
+        return {transmittance.light_on_metal() * (weight * f), transmittance.reach * pdf};
     }
     HD_CALL LobeDraw draw(Vec3 wo, float u_lobe, Vec2 u) const {
         if (widths.is_smooth()) return draw_mirror(wo, weight * fresnel_conductor(abs(wo.z), eta, k), 1);

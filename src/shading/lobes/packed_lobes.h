@@ -29,6 +29,12 @@ struct PackedMicrofacets {
             is_even ? y : wide_and_more.low(), y, {inv * x, inv * z}, (width & kBeckmann) != 0, (width & kSingle) != 0};
     }
     HD float more() const { return wide_and_more.high(); }
+    /// Returns GGX's width, or 0 for others, for smooth and for stretched microfacets.
+    HD float even_width() const {
+        const float y = float_of<float>(width & ~(kBeckmann | kSingle));
+        const bool is_even = (wide_and_more.bits & 0xffffu) == UnitPair::word_of(y) && (width & kBeckmann) == 0;
+        return is_even && y >= kSmoothAlpha ? y : 0.0f;
+    }
 
 private:
     static constexpr uint32_t kBeckmann = 1u << 31, kSingle = 1u << 30;

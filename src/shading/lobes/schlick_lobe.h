@@ -89,7 +89,7 @@ struct SchlickLobeOf {
         BsdfValue value;
         if (!is_smooth()) {
             const GgxReflection once = evaluate_ggx_reflection(o, i, alpha);
-            value = {transmittance.light * value_of(once, i.z, average, at_o, at_i),
+            value = {transmittance.light_on_metal() * value_of(once, i.z, average, at_o, at_i),
                      transmittance.reach * pdf_of(once, i.z, shares.specular, shares.more)};
         }
         transmittance.near = 1.0f - at_o.coat;

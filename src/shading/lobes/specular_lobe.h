@@ -47,7 +47,7 @@ struct SpecularLobe {
         if (!is_smooth() && wo.z * wi.z > 0) {
             const GgxReflection once = evaluate_ggx_reflection(o, i, alpha);
             const Rgb more = (i.z * kInvPi * at_o.lost * at_i.lost / average.lost) * average.more;
-            value = {transmittance.light * (once.f * once_at(schlick_weight(once.cos_h)) + more),
+            value = {transmittance.light_on_metal() * (once.f * once_at(schlick_weight(once.cos_h)) + more),
                      transmittance.reach * sampler().pdf_of(once, i.z, shares.specular, shares.more)};
         }
         transmittance.near = 1.0f - at_o.coat;
