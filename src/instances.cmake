@@ -122,8 +122,8 @@ pertev_launches(denoise/oidn/oidn_stages.cu
     ReadShownFrame
     ShowColor)
 pertev_launches(denoise/picture_denoiser_stages.cu
-  denoise/compose_samples.h denoise/estimate_variance.h denoise/even_pass.h denoise/finish_sums.h denoise/gather_mirrors.h
-  denoise/mix_history.h render/pixel_window.h
+  denoise/compose_samples.h denoise/estimate_variance.h denoise/even_pass.h denoise/fade_filter.h denoise/finish_sums.h
+  denoise/gather_mirrors.h denoise/mix_history.h render/pixel_window.h
   STAGES BeginSums
     FinishSums
     BeginMirrors
@@ -143,7 +143,11 @@ pertev_launches(denoise/picture_denoiser_stages.cu
     CompareHistory
     AverageDifference
     MixHistory
-    ComposeSamples)
+    GatherNoise
+    GatherMirrorNoise
+    FadeSignals
+    ComposeSamples
+    MixMean)
 pertev_launches(denoise/reconstruction_stages.cu
   denoise/accumulate_signals.h denoise/anti_alias.h denoise/clamp_history.h denoise/compose_picture.h
   denoise/split_signals.h denoise/wavelet_pass.h

@@ -17,7 +17,7 @@ struct ComposeSamples {
     Float4* picture;      // rgb, W/(sr m2); w is unused
 
     HD void operator()(uint32_t pixel) const {
-        const float features = first_features + static_cast<float>(sums.exact.at(SampleSums::kFeatures, pixel));
+        const float features = sums.features(first_features, pixel);
         const Float4 emission = sums.all_emission(pixel), loose = sums.loose(pixel);
         Rgb light = sums.all_diffuse_color(pixel) * rgb_of(signals.diffuse[pixel]);
         if (has_gloss) light += sums.all_gloss_color(pixel) * rgb_of(signals.gloss[pixel]);

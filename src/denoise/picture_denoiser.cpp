@@ -7,6 +7,7 @@
 #include "denoise/compose_samples.h"
 #include "denoise/estimate_variance.h"
 #include "denoise/even_pass.h"
+#include "denoise/fade_filter.h"
 #include "denoise/finish_sums.h"
 #include "denoise/gather_mirrors.h"
 #include "device/launch.h"
@@ -22,6 +23,15 @@ constexpr std::size_t kOfGuide = 4, kOfSums = 8 + 2 * kNeighbourSurfaces, kOfPic
                       kOfChain = 4; // numbers of arrays of Float4
 constexpr std::size_t kWidePictureArrays = kOfGuide + kOfSums + kOfPictureSignals + kOfChain;
 
+std::vector<Float4> colors_of(const Image& image) {
+    std::vector<Float4> colors;
+    for (const float* from = image.pixels.data(); colors.size() < std::size_t(image.width) * image.height;
+         from += image.channels) {
+        colors.push_back({from[0], from[1], from[2], 0});
+    }
+    return colors;
+}
+
 } // namespace
 
 PictureDenoiser::PictureDenoiser(Queue& queue, uint32_t width, uint32_t height)
@@ -29,6 +39,7 @@ PictureDenoiser::PictureDenoiser(Queue& queue, uint32_t width, uint32_t height)
       wide_(queue, (kWidePictureArrays + kOfMirrors) * width * height, "denoised picture"),
       exact_(queue, std::size_t(SampleSums::kArrays) * width * height, "sums of a denoised picture"),
       squares_(queue, std::size_t(2) * width * height, "denoised picture"),
+      noise_(queue, std::size_t(width) * height, "denoised picture"),
       objects_(queue, std::size_t(width) * height, "denoised picture") {
     Float4* next = wide_.data();
     const auto take = [&](Float4*& array) {
@@ -163,11 +174,14 @@ void PictureDenoiser::restore(const DenoiserState& state) {
     camera_.lens = lens;
 }
 
-/// Filters the signals of mirrors into mirrored_; `other` is free.
+/// Filters the signals of mirrors into mirrored_, and adds their noise; `other` is free.
 void PictureDenoiser::filter_mirrors(SignalsView other) {
     const uint32_t pixels = width_ * height_;
     launch(*queue_, "estimate_mirror_variance", pixels,
            EstimateMirrorVariance{guide_, sums_, mirrors_, other, width_, height_});
+    launch(*queue_, "gather_mirror_noise", pixels,
+           GatherMirrorNoise{sums_, mirrors_, other, static_cast<float>(features_), noise_.data()});
+    launch(*queue_, "fade_signals", pixels, FadeSignals{other, true});
     SignalsView from = other, to = mirrored_;
     for (int pass = 0; pass < kPicturePasses; ++pass) {
         launch(*queue_, "mirror_pass", pixels,
@@ -188,6 +202,9 @@ Image PictureDenoiser::apply(Image picture) {
         *queue_, "estimate_variance", pixels,
         EstimateVariance{smooth, sums_, from, history_ ? history_->of_sample() : nullptr, width_, height_, has_gloss_});
     if (history_) history_->mix(sums_, from, packed_, to, has_gloss_, camera_);
+    const auto first_features = static_cast<float>(features_);
+    launch(*queue_, "gather_noise", pixels, GatherNoise{sums_, from, first_features, has_gloss_, noise_.data()});
+    launch(*queue_, "fade_signals", pixels, FadeSignals{from, has_gloss_});
     for (int pass = 0; pass < kPicturePasses; ++pass) {
         launch(*queue_, "even_pass", pixels,
                EvenPass{packed_, from, to, camera_, width_, height_, kSteps[pass], kPictureTolerance, has_gloss_});
@@ -195,9 +212,12 @@ Image PictureDenoiser::apply(Image picture) {
     }
     if (has_gloss_) filter_mirrors(to);
     launch(*queue_, "compose_samples", pixels,
-           ComposeSamples{sums_, from, mirrors_if_gloss(), mirrored_, static_cast<float>(features_), has_gloss_,
-                          to.diffuse});
-    std::vector<Float4> shown(pixels);
+           ComposeSamples{sums_, from, mirrors_if_gloss(), mirrored_, first_features, has_gloss_, to.diffuse});
+    std::vector<Float4> shown = colors_of(picture);
+    if (!history_) { // with one, the light is of more samples than the mean
+        queue_->copy_to_device(to.gloss, shown.data(), pixels * sizeof(Float4));
+        launch(*queue_, "mix_mean", pixels, MixMean{sums_, to.gloss, noise_.data(), to.diffuse});
+    }
     queue_->copy_to_host(shown.data(), to.diffuse, pixels * sizeof(Float4));
     return with_colors(std::move(picture), shown);
 }

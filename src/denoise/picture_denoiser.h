@@ -60,6 +60,7 @@ private:
     Buffer<Float4> wide_;
     Buffer<int64_t> exact_;
     Buffer<Vec2> squares_;
+    Buffer<float> noise_;
     Buffer<uint32_t> objects_;
     PictureGuide guide_ = {};
     Float4 *smooth_ = nullptr, *packed_ = nullptr;

@@ -94,6 +94,10 @@ struct PictureSums {
         return all<SampleSums::Color>(neighbour_gloss[slot][pixel], of_slot(slot) + SampleSums::kSlotGloss,
                                       of_slot(slot) + SampleSums::kSlotCount, pixel);
     }
+    /// Number of camera rays in the sums of features, of which `first` are those of the first samples.
+    HD float features(float first, uint32_t pixel) const {
+        return first + static_cast<float>(exact.at(SampleSums::kFeatures, pixel));
+    }
     /// Light of samples on another known surface; their number.
     HD Float4 neighbour(uint32_t pixel) const {
         return all<SampleSums::Light>({0, 0, 0, 0}, SampleSums::kNeighbour, SampleSums::kNeighbourCount, pixel);

@@ -1,10 +1,13 @@
-// Denoising gives cut peaks back to the pixels around: a room lit through a door's gap keeps its light.
+// Denoising gives cut peaks back to the pixels around: a room lit through a door's gap keeps its light. With many
+// samples it changes little.
 
 #include <doctest/doctest.h>
 
 #include "formats/read_scene.h"
+#include "image/flip.h"
 #include "session/session.h"
 #include "tests/support/flat_scenes.h"
+#include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
 using namespace pertev;
@@ -61,4 +64,23 @@ TEST_CASE("a denoised picture of few samples keeps the light of lamps smaller th
         MESSAGE("small lamps: ", denoised / expected, " of the light by ", samples, " samples");
         CHECK(denoised == doctest::Approx(expected).epsilon(0.03)); // far less if emitters without a sample are lost
     }
+}
+
+TEST_CASE("the filter of denoised pictures fades as the noise of the samples does") {
+    Messages messages;
+    const Scene scene = read_scene("cornell-box", {}, messages);
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings;
+    settings.width = settings.height = 40;
+    settings.path.max_depth = 3;
+    settings.denoise = Denoise::Svgf;
+    Queue queue = requested_queue();
+    Session session(queue, prepared, scene.cameras.front(), settings);
+    session.render(16);
+    const double few = flip(session.denoised().value(), session.picture()).mean;
+    session.render(static_cast<uint32_t>(effort(1024, 4096)) - 16);
+    const double many = flip(session.denoised().value(), session.picture()).mean;
+    MESSAGE("FLIP between denoised and not: ", few, " with 16 samples, ", many, " with many");
+    CHECK(few > 0.02);
+    CHECK(many < 0.002);
 }
