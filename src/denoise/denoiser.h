@@ -30,7 +30,7 @@ public:
     /// is their camera. Samples will have the pixels of `window` alone, which are whole rows.
     virtual void begin(const NoisyFrame& centres, const CameraView& camera, const PixelWindow& window) = 0;
     /// Number of samples per pixel whose surfaces must be passed to add_features() between begin() and the first
-    /// add().
+    /// add(). If there are no mirrors to guide, they may also come one by one, each before the light of that sample.
     virtual uint32_t feature_samples() const = 0;
     /// Adds the hits of a sample's camera rays. `frame` may have no light.
     virtual void add_features(const NoisyFrame& frame, const SceneView& scene) = 0;
@@ -41,6 +41,8 @@ public:
     /// that the frame's view states. Each of the two functions is called for the lobe 0 and then for the largest number
     /// below 1.
     virtual void guide_mirrors(const NoisyFrame&) {}
+    /// Returns whether guide_mirrors() has got any. If not, frames need not store mirrors, nor need they be added.
+    virtual bool has_mirrors() const { return false; }
     virtual void add_mirrors(const NoisyFrame&, const SceneView&) {}
     /// Returns the light of earlier frames, if the denoiser has that of frames of a sequence; else null.
     virtual PictureHistory* history() { return nullptr; }

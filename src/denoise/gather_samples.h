@@ -5,6 +5,7 @@
 #include "denoise/mirror_sums.h"
 #include "denoise/reproject.h"
 #include "denoise/split_light.h"
+#include "render/film_view.h"
 #include "shading/shading_frame.h"
 
 namespace pertev {
@@ -128,7 +129,10 @@ struct GatherFeatures {
     HD void operator()(uint32_t pixel) const {
         const NoisyFrameView& frame = samples.frame;
         const PictureSums& sums = samples.sums;
-        const Rgb emission = frame.light[pixel].w != 0 ? rgb_of(frame.emission[pixel]) : Rgb{0, 0, 0};
+        // The light may be of the camera ray alone or of the whole sample, and must not matter.
+        const Rgb seen = rgb_of(frame.emission[pixel]);
+        const bool is_valid = is_valid_sample(seen.r) && is_valid_sample(seen.g) && is_valid_sample(seen.b);
+        const Rgb emission = is_valid ? seen : Rgb{0, 0, 0};
         const SampledSurfaces::Found found = samples.found(pixel);
         if (found.object == kNoHit) return SampledSurfaces::add(sums.emission[pixel], emission);
         const Rgb diffuse = diffuse_divisor(frame, pixel), gloss = gloss_divisor(frame, pixel);

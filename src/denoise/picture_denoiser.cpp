@@ -78,7 +78,7 @@ void PictureDenoiser::begin(const NoisyFrame& centres, const CameraView& camera,
     launch(*queue_, "begin_mirrors", width_ * height_, BeginMirrors{mirrors_});
     camera_ = camera;
     window_ = window;
-    has_gloss_ = centres.splits_light();
+    has_gloss_ = centres.splits_light(), has_mirrors_ = false;
     features_ = 0;
     forget_samples();
 }
@@ -105,6 +105,12 @@ void PictureDenoiser::add_features(const NoisyFrame& frame, const SceneView& sce
 void PictureDenoiser::guide_mirrors(const NoisyFrame& frame) {
     PERTEV_CHECK(frame.view().mirrors.is_there());
     launch(*queue_, "guide_mirrors", width_ * height_, GuideMirrors{frame.view().mirrors, mirrors_});
+    std::vector<Float4> normals(std::size_t(width_) * height_);
+    for (const MirrorBranch& branch : mirrors_.branches) {
+        if (has_mirrors_) return;
+        queue_->copy_to_host(normals.data(), branch.normal, normals.size() * sizeof(Float4));
+        has_mirrors_ = std::ranges::any_of(normals, [](Float4 normal) { return bits_of(normal.w) >= 2; });
+    }
 }
 
 void PictureDenoiser::add_mirrors(const NoisyFrame& frame, const SceneView& scene) {
@@ -113,7 +119,7 @@ void PictureDenoiser::add_mirrors(const NoisyFrame& frame, const SceneView& scen
 }
 
 void PictureDenoiser::add(const NoisyFrame& frame, const SceneView& scene, uint32_t sample) {
-    PERTEV_CHECK(features_ == kFeatures);
+    PERTEV_CHECK(features_ > std::min(sample, kFeatures - 1));
     launch_in(*queue_, "gather_light", window_,
               GatherLight{surfaces_of(frame, scene), mirrors_if_gloss(), sample >= kFeatures});
     ++samples_;
@@ -168,7 +174,7 @@ void PictureDenoiser::restore(const DenoiserState& state) {
     const bool is_part = window_.count() > 0;
     restore_pixels(*queue_, gathered(), pixels, is_part ? std::size_t(window_.y) * width_ : 0,
                    is_part ? window_.count() : pixels, std::span(state).subspan(DenoiserHead::kWords));
-    samples_ = head.samples, features_ = head.features, has_gloss_ = head.has_gloss;
+    samples_ = head.samples, features_ = head.features, has_gloss_ = has_mirrors_ = head.has_gloss;
     const LensView lens = camera_.lens; // is not in the head
     camera_ = head.camera;
     camera_.lens = lens;
@@ -210,7 +216,7 @@ Image PictureDenoiser::apply(Image picture) {
                EvenPass{packed_, from, to, camera_, width_, height_, kSteps[pass], kPictureTolerance, has_gloss_});
         std::swap(from, to);
     }
-    if (has_gloss_) filter_mirrors(to);
+    if (mirrors_if_gloss().is_there()) filter_mirrors(to);
     launch(*queue_, "compose_samples", pixels,
            ComposeSamples{sums_, from, mirrors_if_gloss(), mirrored_, first_features, has_gloss_, to.diffuse});
     std::vector<Float4> shown = colors_of(picture);

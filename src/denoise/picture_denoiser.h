@@ -28,6 +28,7 @@ public:
     void add_features(const NoisyFrame& frame, const SceneView& scene) override;
     MirrorChainView mirrors() const override { return chain_; }
     void guide_mirrors(const NoisyFrame& frame) override;
+    bool has_mirrors() const override { return has_mirrors_; }
     void add_mirrors(const NoisyFrame& frame, const SceneView& scene) override;
     void add(const NoisyFrame& frame, const SceneView& scene, uint32_t sample) override;
     PictureHistory* history() override { return history_ ? &*history_ : nullptr; }
@@ -54,7 +55,7 @@ private:
 
     Queue* queue_;
     uint32_t width_, height_, samples_ = 0, features_ = 0;
-    bool has_gloss_ = false;
+    bool has_gloss_ = false, has_mirrors_ = false;
     CameraView camera_ = {};
     PixelWindow window_;
     Buffer<Float4> wide_;
@@ -70,7 +71,7 @@ private:
     MirrorChainView chain_ = {};
     std::optional<PictureHistory> history_; // none: pictures are independent
 
-    MirrorSums mirrors_if_gloss() const { return has_gloss_ ? mirrors_ : MirrorSums{}; }
+    MirrorSums mirrors_if_gloss() const { return has_gloss_ && has_mirrors_ ? mirrors_ : MirrorSums{}; }
 };
 
 } // namespace pertev

@@ -212,8 +212,10 @@ uint32_t FilmRender::render_passes(SampleRange range, Sink& sink) {
     const Stopwatch since_call;
     const uint32_t before = samples().count(), count = range.count();
     Film& whole = film();
-    if (has_steps() && before == 0 && !steps_->begin(camera_, settings_, on_cpu() ? &sink : nullptr, scene_before()))
-        return 0;
+    if (has_steps() && before == 0) {
+        const auto features = range.first == 0 ? PostSteps::Features::WithSamples : PostSteps::Features::AtOnce;
+        if (!steps_->begin(camera_, settings_, on_cpu() ? &sink : nullptr, scene_before(), features)) return 0;
+    }
     Integrator& integrator = pictures_.begin(camera_, settings_, has_steps() ? 1 : count, number_);
     if (before == 0) pictures_.find_centres(camera_, settings_, whole);
     const Stopwatch watch;
@@ -240,7 +242,8 @@ uint32_t FilmRender::render_passes(SampleRange range, Sink& sink) {
         if (added < wanted || !sink.goes_on(progress_of(passes)) || passes.is_time_over()) break;
     }
     const uint32_t after = samples().count();
-    return after < before ? 0 : after - before; // an unfinished pass may have lost all samples
+    if (has_steps() && after > 0) steps_->add_features(nullptr); // some samples may not be rendered yet
+    return after < before ? 0 : after - before;                  // an unfinished pass may have lost all samples
 }
 
 /// Lets the integrator compute what it needs before its first sample. Returns whether it did so to the end.

@@ -105,12 +105,14 @@ RenderSettings PostSteps::fit(const RenderSettings& settings) {
     return settings_of_features(settings, mirrors_.is_there());
 }
 
-bool PostSteps::begin(const Camera& camera, const RenderSettings& settings, Sink* sink, const PreviousScene& before) {
-    const RenderSettings of_features = fit(settings);
-    find_centres(camera, of_features, before, sink);
-    const bool is_whole = add_features(camera, of_features, sink);
-    if (is_whole) follow(-1);
-    return is_whole;
+bool PostSteps::begin(const Camera& camera, const RenderSettings& settings, Sink* sink, const PreviousScene& before,
+                      Features features) {
+    find_centres(camera, fit(settings), before, sink);
+    camera_ = camera, of_features_ = settings_of_features(settings, mirrors_.is_there());
+    features_ = 0;
+    // Mirrors need other samples, and a medium scatters a path by its length.
+    const bool may_wait = !mirrors_.is_there() && pictures_.scene().view().has_media == 0;
+    return (may_wait && features == Features::WithSamples) || add_features(sink);
 }
 
 void PostSteps::begin_restored(const Camera& camera, const RenderSettings& settings, const PreviousScene& before) {
@@ -158,12 +160,14 @@ void PostSteps::find_centres(const Camera& camera, const RenderSettings& of_feat
     follow(kLastLobe);
     of_pinhole.render(0, 1, frame.film_view());
     denoisers_.front()->guide_mirrors(frame);
+    if (!denoisers_.front()->has_mirrors()) mirrors_ = {};
+    follow(-1);
 }
 
-/// Passes to the steps the surfaces of samples. Returns false once `sink` stops.
-bool PostSteps::add_features(const Camera& camera, const RenderSettings& of_features, Sink* sink) {
+bool PostSteps::add_features(Sink* sink) {
+    if (has_features()) return true;
     NoisyFrame& frame = *sample_;
-    Integrator& integrator = pictures_.begin(camera, of_features, 1);
+    Integrator& integrator = pictures_.begin(camera_, of_features_, 1);
     integrator.stop_with(sink);
     const auto render = [&](uint32_t sample, float lobe) {
         follow(lobe);
@@ -173,16 +177,15 @@ bool PostSteps::add_features(const Camera& camera, const RenderSettings& of_feat
         return sink == nullptr || !sink->should_stop();
     };
     const SceneView& scene = pictures_.scene().view();
-    for (const auto& denoiser : denoisers_) {
-        for (uint32_t sample = 0; sample < denoiser->feature_samples(); ++sample) {
-            if (!render(sample, 0)) return false;
-            denoiser->add_features(frame, scene);
-            if (!mirrors_.is_there()) continue;
-            denoiser->add_mirrors(frame, scene);
-            if (!render(sample, kLastLobe)) return false;
-            denoiser->add_mirrors(frame, scene);
-        }
+    for (; !has_features(); ++features_) {
+        if (!render(features_, 0)) return false;
+        for (const auto& denoiser : denoisers_) denoiser->add_features(frame, scene);
+        if (!mirrors_.is_there()) continue;
+        denoisers_.front()->add_mirrors(frame, scene);
+        if (!render(features_, kLastLobe)) return false;
+        denoisers_.front()->add_mirrors(frame, scene);
     }
+    follow(-1);
     return true;
 }
 
@@ -197,7 +200,12 @@ void PostSteps::add(Integrator& integrator, uint32_t first, uint32_t count, cons
         if (sink != nullptr && sink->should_stop()) return;
         launch_in(pictures_.queue(), "add_frame_to_film", window_,
                   AddFrameToFilm{sample_->view(), film.view(), scene, sample == 0});
-        for (const auto& denoiser : denoisers_) denoiser->add(*sample_, scene, sample);
+        const bool is_feature = !has_features() && sample == features_;
+        if (is_feature) ++features_;
+        for (const auto& denoiser : denoisers_) {
+            if (is_feature) denoiser->add_features(*sample_, scene);
+            denoiser->add(*sample_, scene, sample);
+        }
     }
     pictures_.queue().wait();
 }

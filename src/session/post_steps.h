@@ -33,10 +33,18 @@ public:
     /// Makes an object without steps; `pictures` outlives it.
     explicit PostSteps(PictureRenderer& pictures) : pictures_(pictures) {}
 
+    /// Selects when the steps get the surfaces of the first samples, which they need: at once, or with the light of
+    /// these samples if the scene allows it, which takes less time.
+    enum class Features : uint8_t { AtOnce, WithSamples };
+
     /// Begins a picture, or the part of its rows: creates the steps that `settings` request, and passes them the
     /// visible surfaces. Returns false once `sink` stops; null: never. If there is a history, `before` is where the
-    /// scene was in the frame that left it. Throws Error(OutOfMemory, DeviceFault).
-    bool begin(const Camera& camera, const RenderSettings& settings, Sink* sink, const PreviousScene& before = {});
+    /// scene was in the frame that left it. After Features::WithSamples, add() must begin with sample 0, and
+    /// add_features() must follow it. Throws Error(OutOfMemory, DeviceFault).
+    bool begin(const Camera& camera, const RenderSettings& settings, Sink* sink, const PreviousScene& before = {},
+               Features features = Features::AtOnce);
+    /// Passes to the steps the surfaces of the first samples that are missing. Returns false once `sink` stops.
+    bool add_features(Sink* sink);
     /// Begins a picture whose samples come by restore().
     void begin_restored(const Camera& camera, const RenderSettings& settings, const PreviousScene& before);
     /// Returns the history of frames; null if there is none.
@@ -65,12 +73,15 @@ private:
     RenderSettings fit(const RenderSettings& settings);
     CameraView view_of_centres(const Camera& pinhole, const RenderSettings& of_centres);
     void find_centres(const Camera& camera, const RenderSettings& of_features, const PreviousScene& before, Sink* sink);
-    bool add_features(const Camera& camera, const RenderSettings& of_features, Sink* sink);
+    bool has_features() const { return features_ >= denoisers_.front()->feature_samples(); }
 
     PictureRenderer& pictures_;
     std::optional<NoisyFrame> sample_;
     MirrorChainView mirrors_; // that samples of surfaces follow
-    PixelWindow window_;      // the rows that are rendered
+    Camera camera_;
+    RenderSettings of_features_; // settings of samples of surfaces
+    uint32_t features_ = 0;      // number of samples whose surfaces the steps have
+    PixelWindow window_;         // the rows that are rendered
     std::vector<std::unique_ptr<Denoiser>> denoisers_;
     // Kind of steps, the size of their picture, and samples and frames of a history.
     std::tuple<Denoise, uint32_t, uint32_t, uint32_t, uint32_t> made_for_ = {};

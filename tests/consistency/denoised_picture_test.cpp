@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "formats/read_scene.h"
 #include "image/picture_hash.h"
 #include "session/session.h"
 #include "session/session_bytes.h"
@@ -77,6 +78,24 @@ TEST_CASE(
         Queue cuda = make_cuda_queue();
         CHECK(hash_of_denoised(cuda, prepared, settings, {5}) == expected);
     }
+}
+
+TEST_CASE("surfaces of the first samples come with their light or before it, with the same bytes") {
+    Messages messages;
+    const Scene scene = read_scene("cornell-box", {}, messages); // without mirrors
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = requested_queue();
+    RenderSettings settings = denoised_settings();
+    settings.width = settings.height = 24;
+    const auto hash_of = [&](uint32_t first, uint32_t rest) {
+        Session session(queue, prepared, scene.cameras.front(), settings);
+        session.render(first);
+        session.render(rest);
+        return picture_hash(session.denoised().value());
+    };
+    const Hash128 expected = hash_of(17, 3);
+    CHECK(hash_of(1, 19) == expected);
+    CHECK(hash_of(9, 11) == expected);
 }
 
 TEST_CASE("denoising does not change the film and its layers") {

@@ -67,7 +67,15 @@ public:
 
     HD explicit LightSplit(const PathJob& job) : frame_(job.film.frame) {}
 
-    static uint32_t depth_of_lanes(const PathJob& job) { return job.film.frame.splits_light() ? kNoLaneDepth : 0; }
+    static uint32_t depth_of_lanes(const PathJob& job) { return job.film.frame.splits_light() ? 1 : 0; }
+    /// Lanes do not tell what a surface emits towards the path.
+    bool may_be_in_lanes(const SceneView& scene, const PathState&, const Hit& hit) const {
+        return !frame_.splits_light() ||
+               !(max_component(scene.materials[scene.instances[hit.instance].material].emission) > 0);
+    }
+    void shadow_in_lanes(const PathData& kept, const ShadowRay& shadow, ShadowData& shadow_data) const {
+        if (frame_.splits_light()) shadow_data.diffuse = unpacked(bits_of(kept.diffuse.w)) * shadow.contribution;
+    }
     HD void begins(const PathState&) { kept_ = {}; }
     HD void restore(const PathData& kept) {
         kept_ = kept;

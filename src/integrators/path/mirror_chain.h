@@ -11,7 +11,8 @@ class MirrorChain : public PathListener<MirrorChain> {
 public:
     HD explicit MirrorChain(const PathJob& job) : chain_(job.film.frame.mirrors) {}
 
-    static uint32_t depth_of_lanes(const PathJob& job) { return job.film.frame.mirrors.is_there() ? kNoLaneDepth : 0; }
+    static uint32_t depth_of_lanes(const PathJob&) { return 0; }
+    bool may_be_in_lanes(const SceneView&, const PathState& path, const Hit&) const { return !follows(path); }
     HD void missed(const PathState& path) {
         if (follows(path)) store(path, path.direction, kNoHit, {0, 0, 0}, {0, 0, 0});
     }

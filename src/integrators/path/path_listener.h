@@ -84,10 +84,14 @@ struct PathListener {
     HD void restore(const K&) {}
     /// Called when the path's ray has hit a surface after path.depth scatterings.
     HD void vertex(const PathState&, const Hit&, Surface&) {}
-    /// Least depth at which the host may shade vertices in lanes (shade_lanes.h): the listener then needs no more of
-    /// one than vertex_in_lanes, and nothing of its shadow ray.
+    /// Least depth at which the host may shade vertices in lanes (shade_lanes.h), if may_be_in_lanes allows it: the
+    /// listener then needs no more of one than vertex_in_lanes, and of its shadow ray no more than shadow_in_lanes.
     static uint32_t depth_of_lanes(const PathJob&) { return kNoLaneDepth; }
+    bool may_be_in_lanes(const SceneView&, const PathState&, const Hit&) const { return true; }
     void vertex_in_lanes(const PathState&, const Hit&) {}
+    /// Sets the data of the shadow ray of a vertex from those of the path.
+    template <class K, class A>
+    void shadow_in_lanes(const K&, const ShadowRay&, A&) const {}
     /// Called when the ray has hit no surface: it leaves the scene, or a medium scatters it first.
     HD void missed(const PathState&) {}
     /// Called before light at `point`, which the ray hit, is added; next-event estimation would have sampled it with
@@ -152,7 +156,15 @@ struct Listeners : Ls... {
         ((depth = max(depth, Ls::depth_of_lanes(job))), ...);
         return depth;
     }
+    bool may_be_in_lanes(const SceneView& scene, const PathState& path, const Hit& hit) const {
+        return (Ls::may_be_in_lanes(scene, path, hit) && ...);
+    }
     void vertex_in_lanes(const PathState& path, const Hit& hit) { (Ls::vertex_in_lanes(path, hit), ...); }
+    void shadow_in_lanes(const PathData& kept, const ShadowRay& shadow, ShadowData& shadow_data) const {
+        (Ls::shadow_in_lanes(static_cast<const typename Ls::PathData&>(kept), shadow,
+                             static_cast<typename Ls::ShadowData&>(shadow_data)),
+         ...);
+    }
     HD void missed(const PathState& path) { (Ls::missed(path), ...); }
     HD bool removes_emission(const PathState& path, const EmitterPoint& point, [[maybe_unused]] float pdf) {
         return (Ls::removes_emission(path, point, pdf) || ...);

@@ -139,8 +139,7 @@ public:
                 missed_[missed++] = i;
                 continue;
             }
-            switch (paths_[i].depth >= depth_of_lanes_ ? lane_lobes(this->scene_of(paths_[i]), paths_[i], hits_[i])
-                                                       : LaneLobes::None) {
+            switch (may_be_in_lanes(i) ? lane_lobes(this->scene_of(paths_[i]), paths_[i], hits_[i]) : LaneLobes::None) {
             case LaneLobes::None:
                 alone_[alone++] = i;
                 break;
@@ -169,6 +168,11 @@ public:
     }
 
 private:
+    bool may_be_in_lanes(uint32_t i) const {
+        return paths_[i].depth >= depth_of_lanes_ &&
+               Listener(job_).may_be_in_lanes(this->scene_of(paths_[i]), paths_[i], hits_[i]);
+    }
+
     template <class Shade>
     void shade_together(const Shade& shade, const uint32_t* which, uint32_t count) {
         const uint32_t lanes = lanes_.lanes;
@@ -190,7 +194,7 @@ private:
                 const uint32_t i = which[first + lane];
                 goes_on_[i] = (results.goes_on >> lane & 1) != 0;
                 if ((results.has_shadow_ray >> lane & 1) == 0) continue;
-                shadow_data_[shadows_] = {};
+                Listener(job_).shadow_in_lanes(kept_[i], shadow_rays_[shadows_], shadow_data_[shadows_] = {});
                 shadow_keys_[shadows_] = keys[lane], shadow_paths_[shadows_++] = i;
             }
         }
