@@ -47,7 +47,7 @@ set(lobe_files energy_table_data.h sheen_table_data.h beckmann_table_data.h lobe
     metal_average_schlick.inl glass_lost.inl glass_average_lost.inl albedo.inl beckmann_lost.inl beckmann_schlick.inl beckmann_average_lost.inl
     beckmann_glass_lost.inl beckmann_average_glass_lost.inl stretched_table_data.h stretched_lost.inl
     stretched_average_lost.inl stretched_beckmann_lost.inl stretched_beckmann_average_lost.inl
-    coated_table_data.h returned_by_coat.inl)
+    coated_table_data.h returned_by_coat.inl stretched_glass_factor.inl stretched_glass_average.inl)
 list(TRANSFORM lobe_files PREPEND ${lobes}/)
 add_custom_command(OUTPUT ${lobe_files}
   DEPENDS pertev_make_lobe_tables COMMAND pertev_make_lobe_tables ${lobes} COMMENT "Integrating the tables of lobes" VERBATIM)

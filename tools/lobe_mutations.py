@@ -37,6 +37,8 @@ MUTATIONS = [
     ("a coat's colour without its texture above what glows", "statistical/stretched_layers", ("src/shading/light_set.h", "if (const TextureRef& ref = surface.coat_color_texture; ref.has_image()) {", "if (const TextureRef& ref = surface.coat_color_texture; false) {")),
     ("a coat is stretched about another tangent where it is bent", "statistical/stretched_layers", ("src/shading/lobes/coat_lobe.h", "if (is_bent()) tangent =", "if (false) tangent =")),
     ("a coat does not turn with its material's rotation", "statistical/stretched_layers", ("src/device_scene/surface.h", "material.coat_anisotropy_rotation,", "0,")),
+    ("stretched glass loses what even glass does", "statistical/stretched_layers", ("src/shading/lobes/microfacets.h", "return x != y && !is_beckmann;", "return false && x != y;")),
+    ("stretched glass loses what the most stretched one does", "statistical/stretched_layers statistical/random_bsdfs", ("src/shading/lobes/stretched_tables.h", "ratio = make_cell(sqrt(y / x), kGlassRatioNodes),", "ratio = make_cell(0.0f * y, kGlassRatioNodes),")),
     ("a coat returns no light to metal", "statistical/bsdf_energy", ("src/shading/lobes/coat_lobe.h", "if (transmittance.metal_share > 0 && !is_bent())", "if (false)")),
     ("a coat returns the light of the smoothest one", "statistical/bsdf_energy", ("src/shading/lobes/coated_table.h", "                        coat.fraction);", "                        0.0f * coat.fraction);")),
     ("a coat returns to all metals as to one beside", "statistical/bsdf_energy", ("src/shading/lobe.h", "alpha = conductor.alpha;", "alpha = 0.8f * conductor.alpha;")),

@@ -31,6 +31,7 @@
 #include "beckmann_integrals.h"
 #include "coated_integrals.h"
 #include "ggx_integrals.h"
+#include "stretched_glass_integrals.h"
 #include "stretched_integrals.h"
 
 namespace {
@@ -40,7 +41,7 @@ constexpr int kBeckmannRoughnessNodes = 20, kBeckmannIorNodes = 14;
 constexpr double kAlphaMin = 1e-3, kIorMin = 1.1, kIorMax = 3, kOvershoot = 2e-4;
 constexpr int kSheenMuNodes = 24, kSheenRoughnessNodes = 16;
 constexpr double kSheenRoughnessMin = 0.2;
-constexpr uint64_t kHash = 0xe6b60f01692adf87; // hash of the numbers of all tables
+constexpr uint64_t kHash = 0xb61edab7e2d290f0; // hash of the numbers of all tables
 
 double mu_at(double x, double alpha) {
     const double p = x * (kMuNodes - 1);
@@ -343,18 +344,55 @@ TableGroup sheen_table() {
             {{"float", "albedo", table}}};
 }
 
-TableGroup stretched_table() {
+/// Returns what stretched glass loses over what the even surface that loses as much as stretched metal does, on
+/// average, loses, times the same of metal: stretched_tables.h has it too.
+StretchedGlassTable stretched_glass(const TableGroup& energy, const StretchedTable& metal) {
+    const Values &lost = energy.tables[0].values, &glass = energy.tables[4].values;
+    const auto guess = [&](const StretchedGlassTable::View& view, double eta) {
+        const double t = std::sqrt(view.y / view.x), mu = view.w[2];
+        const double alpha = std::max(kAlphaMin, view.x * (0.67 + 0.33 * t * (0.3 + 0.7 * t)));
+        const double r = (std::sqrt(alpha) - std::sqrt(kAlphaMin)) / (1 - std::sqrt(kAlphaMin)), x = x_at(mu, alpha);
+        const double place = std::max(r, 0.0) * (kRoughnessNodes - 1);
+        const int row = std::min(int(place), kRoughnessNodes - 2);
+        const auto even = [&](const double* table) {
+            const double* const at = table + row * kMuNodes;
+            return std::lerp(interpolate(at, kMuNodes, x), interpolate(at + kMuNodes, kMuNodes, x), place - row) /
+                   65535;
+        };
+        const double k = std::sqrt((std::max(eta, 1 / eta) - 1) / (std::max(eta, 1 / eta) + 1));
+        const auto root = [](double ior) { return std::sqrt((ior - 1) / (ior + 1)); };
+        const double q = std::clamp((k - root(kIorMin)) / (root(kIorMax) - root(kIorMin)), 0.0, 1.0) * (kIorNodes - 1);
+        const int cell = std::min(int(q), kIorNodes - 2), first = (eta > 1 ? 0 : kIorNodes) + cell;
+        constexpr int kStride = kRoughnessNodes * kMuNodes;
+        const double of_glass =
+            std::lerp(even(&glass[size_t(first) * kStride]), even(&glass[size_t(first + 1) * kStride]), q - cell);
+        return of_glass * metal.at(view.x, view.y, view.w) / std::max(even(lost.data()), 1e-9);
+    };
+    return StretchedGlassTable(guess, eta_at);
+}
+
+TableGroup stretched_table(const TableGroup& energy) {
     using S = StretchedTable;
+    using G = StretchedGlassTable;
     const S ggx(false), beckmann(true);
+    const G glass = stretched_glass(energy, ggx);
     return {"stretched_table",
             fmt::format("inline constexpr int kMuNodes = {}, kAzimuthNodes = {}, kWidthNodes = {}, kRatioNodes = {},\n"
-                        "kAverageWidthNodes = {}, kAverageRatioNodes = {};\ninline constexpr float kWidthMin = {}f;\n",
+                        "kAverageWidthNodes = {}, kAverageRatioNodes = {};\ninline constexpr float kWidthMin = {}f;\n"
+                        "inline constexpr int kGlassIorNodes = {}, kGlassWidthNodes = {}, kGlassRatioNodes = {},\n"
+                        "kGlassAzimuthNodes = {}, kGlassMuNodes = {}, kGlassAverageIorNodes = {},\n"
+                        "kGlassAverageWidthNodes = {}, kGlassAverageRatioNodes = {};\n"
+                        "inline constexpr float kGlassUnit = {}f;\n",
                         S::kMuNodes, S::kAzimuthNodes, S::kWidthNodes, S::kRatioNodes, S::kAverageWidthNodes,
-                        S::kAverageRatioNodes, S::kWidthMin),
+                        S::kAverageRatioNodes, S::kWidthMin, G::kIorNodes, G::kWidthNodes, G::kRatioNodes,
+                        G::kAzimuthNodes, G::kMuNodes, G::kAverageIorNodes, G::kAverageWidthNodes,
+                        G::kAverageRatioNodes, G::kUnit),
             {{"uint16_t", "stretched_lost", ggx.lost},
              {"float", "stretched_average_lost", ggx.averages},
              {"uint16_t", "stretched_beckmann_lost", beckmann.lost},
-             {"float", "stretched_beckmann_average_lost", beckmann.averages}}};
+             {"float", "stretched_beckmann_average_lost", beckmann.averages},
+             {"uint8_t", "stretched_glass_factor", glass.factors},
+             {"uint16_t", "stretched_glass_average", glass.averages}}};
 }
 
 /// Returns what coats return to metals, from the tables of what metals lose.
@@ -425,7 +463,8 @@ int main(int count, char** arguments) {
     }
     const std::string folder = std::string(arguments[1]) + "/";
     const TableGroup energy = energy_tables();
-    const TableGroup groups[] = {energy, sheen_table(), beckmann_table(), stretched_table(), coated_table(energy)};
+    const TableGroup groups[] = {energy, sheen_table(), beckmann_table(), stretched_table(energy),
+                                 coated_table(energy)};
     std::string all_numbers, definitions = kOrigin;
     for (const TableGroup& group : groups) {
         for (const Table& table : group.tables) all_numbers += table.numbers();

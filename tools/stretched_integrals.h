@@ -93,6 +93,30 @@ public:
         add_averages();
     }
 
+    /// Interpolates for a view `w` and widths x >= y, as stretched_tables.h does.
+    double at(double x, double y, const std::array<double, 3>& w) const {
+        const double x2 = w[0] * w[0], y2 = w[1] * w[1], mu = w[2], sine2 = x2 + y2;
+        const double alpha = sine2 > 0 ? std::sqrt((x * x * x2 + y * y * y2) / sine2) : x;
+        const double a = std::sqrt(x * x2), b = std::sqrt(y * y2);
+        Place m = place(std::sqrt(mu) / (std::sqrt(mu) + std::sqrt(alpha * (1 - mu))), kMuNodes);
+        if (m.node == 0) m.fraction *= m.fraction;
+        Place width = place((x - kWidthMin) / (1 - kWidthMin), kWidthNodes);
+        if (width.node == 0) width.fraction *= width.fraction;
+        const Place places[] = {place(std::sqrt(y / x), kRatioNodes), width,
+                                place(a + b > 0 ? b / (a + b) : 0, kAzimuthNodes), m};
+        double value = 0;
+        for (int corner = 0; corner < 16; ++corner) {
+            double weight = 1;
+            Cell node;
+            for (int axis = 0; axis < 4; ++axis) {
+                node[axis] = places[axis].node + (corner >> axis & 1);
+                weight *= (corner >> axis & 1) ? places[axis].fraction : 1 - places[axis].fraction;
+            }
+            value += weight * lost[index(node)];
+        }
+        return value / 65535;
+    }
+
 private:
     static constexpr std::array<int, 4> kFine = {2 * kRatioNodes - 1, 2 * kWidthNodes - 1, 2 * kAzimuthNodes - 1,
                                                  2 * kMuNodes - 1};

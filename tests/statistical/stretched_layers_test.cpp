@@ -147,6 +147,40 @@ TEST_CASE("stretched white metal returns all light at every angle and azimuth, G
             }
 }
 
+TEST_CASE("stretched glass returns nearly all light from outside, and most from inside") {
+    // An even surface of the same mean width loses less: with its loss 47 % were lost from outside, 88 % from inside.
+    const struct {
+        float side;
+        double least, mean;
+    } rows[] = {{1, 0.89, 0.985}, {-1, 0.51, 0.955}};
+    for (const auto& row : rows) {
+        double sum = 0;
+        int count = 0;
+        for (const float ior : {1.1f, 1.5f, 2.4f})
+            for (const float roughness : {0.1f, 0.3f, 0.6f})
+                for (const float anisotropy : {0.3f, 0.6f, 0.95f}) {
+                    const Bsdf glass = make_reflection({.base_color = grey(1),
+                                                        .roughness = roughness,
+                                                        .ior = ior,
+                                                        .solid = 1,
+                                                        .anisotropy = anisotropy});
+                    for (const float cosine : {0.003f, 0.03f, 0.1f, 0.35f, 0.65f, 0.95f})
+                        for (const float turn : {0.0f, 0.1f, 0.25f}) {
+                            const double light = mean_weight(glass, direction_at(row.side * cosine, turn), 1 << 10).g;
+                            INFO("index " << ior << ", roughness " << roughness << ", anisotropy " << anisotropy
+                                          << ", cosine " << row.side * cosine << ", turn " << turn << ", light "
+                                          << light);
+                            CHECK(light > row.least);
+                            CHECK(light < 1.012); // the points err by up to 1 %
+                            sum += light;
+                            ++count;
+                        }
+                }
+        INFO("side " << row.side << ", mean " << sum / count);
+        CHECK(sum > row.mean * count);
+    }
+}
+
 TEST_CASE("a coat's anisotropy, its rotation and its texture act in pictures as those of a reflection do") {
     std::vector<TextureImage> images(1);
     images[0].rgba8 = {2, 1, {255, 128, 255, 255, 60, 200, 128, 255}}; // along the tangent, and turned and weaker

@@ -92,10 +92,11 @@ struct Microfacets {
         const float narrow = is_beckmann ? beckmann_schlick(w.z, narrowest()) : metal_schlick(w.z, narrowest());
         return x == y ? narrow : min(narrow + schlick_excess(w), 1.0f);
     }
-    /// lost() and average_lost() of glass. Stretched glass is taken to lose the share of what an even one loses that
-    /// metal has, and at most that; near the horizon less, by comparison over widths and angles.
+    /// lost() and average_lost() of glass. Beckmann's stretched glass is taken to lose the share of what an even one
+    /// loses that metal has, and at most that; near the horizon less, by comparison over widths and angles.
     HD_CALL float glass_loss(Vec3 w, float eta) const {
         if (is_smooth() || is_single) return 0;
+        if (has_glass_table()) return stretched_glass_lost(w, x, y, eta);
         const float width = energy_width(), cosine = min(abs(w.z), 1.0f);
         const float even = is_beckmann ? beckmann_glass_lost(cosine, width, eta) : glass_lost(cosine, width, eta);
         if (x == y) return even;
@@ -104,6 +105,7 @@ struct Microfacets {
         return even * min(lost(w) / max(metal, 1e-9f), horizon);
     }
     HD_CALL float average_glass_loss(float eta) const {
+        if (has_glass_table()) return stretched_average_glass_lost(x, y, eta);
         const float width = energy_width();
         return is_beckmann ? beckmann_average_glass_lost(width, eta) : glass_average_lost(width, eta);
     }
@@ -139,7 +141,11 @@ private:
         return energy_width() > 0.5f ? 0.0f : 0.5f;
     }
     /// Metal loses light up to the angles of the wider width, which has to be drawn there.
-    HD float lost_lobe_width(bool is_glass) const { return is_glass ? energy_width() : widest(); }
+    HD float lost_lobe_width(bool is_glass) const {
+        if (is_glass && has_glass_table()) return stretched_even_width(widest(), narrowest());
+        return is_glass ? energy_width() : widest();
+    }
+    HD bool has_glass_table() const { return x != y && !is_beckmann; }
     /// Found by comparison over widths and angles: most across the tangent, where facets that face the wide way
     /// reflect.
     HD float schlick_excess(Vec3 w) const {
