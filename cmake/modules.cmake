@@ -38,7 +38,7 @@ function(pertev_unity target batch)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${PERTEV_UNITY} UNITY_BUILD_BATCH_SIZE ${batch})
 endfunction()
 
-option(PERTEV_FEW_KERNEL_FILES "Compile up to 8 files of kernels at once, and those of shading too: a smaller program, for few cores" OFF)
+option(PERTEV_FEW_KERNEL_FILES "With PERTEV_UNITY: compile up to 8 files with kernels at once, also those of shading, which makes a program smaller" OFF)
 
 # Replaces the files of `list` by files of EXTENSION that include up to 24 of them each (for ptxas 4, because it has one
 # core for a file), since most of the time that such a file takes goes into headers and into functions that they share. Each file
@@ -72,7 +72,7 @@ function(pertev_gather name extension list)
 endfunction()
 
 # Gathers .cu files of a list of sources, for nvcc or, without kernels, for the C++ compiler. nvcc takes a minute for each file of
-# shading and of traversal. Those stay alone, and so do the files that every picture needs: a GPU is given all kernels of a
+# shading and of traversal. Those stay alone (but see PERTEV_FEW_KERNEL_FILES), and so do the files that every picture needs: a GPU is given all kernels of a
 # file with the first of them. Folders above the clone may have any names.
 function(pertev_gather_kernels name list)
   set(files ${${list}})

@@ -11,17 +11,22 @@ import re
 import subprocess
 import sys
 
-INSTRUCTION = re.compile(r"\s+/\*([0-9a-f]{4,})\*/\s+(?:@!?U?P\d+ )?(.*?);")
+INSTRUCTION = re.compile(r"\s+/\*([0-9a-f]{4,})\*/\s+(.*?);")
+PREDICATE = re.compile(r"^@!?U?P\d+ +")
 TARGET = re.compile(r"\b(?:BRA|CALL)\S*\s+(?:\S+, )?`?\(?(0x[0-9a-f]+)")
 WRITE = re.compile(r"(U[A-Z]\S*|R2UR\S*)\s+(?:UP\d+, )?(UR\d+)(.*)")
+
+
+def without_predicate(text):
+    return PREDICATE.sub("", text, count=1)
 
 
 def calls_others(code, address_of, target):
     """Returns whether the function at `target` calls one."""
     for _, text in code[address_of[target]:]:
-        if text.startswith("CALL"):
+        if without_predicate(text).startswith("CALL"):
             return True
-        if text.startswith("RET"):
+        if text.startswith("RET"):  # a conditional one is not the end
             return False
     return False
 
@@ -30,7 +35,7 @@ def warp_counters(body):
     """Returns the registers of the warp that the loop's only write to them increments."""
     writes = {}
     for _, text in body:
-        if found := WRITE.match(text):
+        if found := WRITE.match(without_predicate(text)):
             writes.setdefault(found[2], []).append((found[1], found[3]))
             if ".64" in found[1]:
                 writes.setdefault(f"UR{int(found[2][2:]) + 1}", []).append((found[1], ""))
@@ -45,7 +50,7 @@ def faults(kernel, code):
         if start >= address or start not in address_of:
             continue
         body = code[address_of[start]:i + 1]
-        calls = [int(found[1], 16) for _, inner in body if inner.startswith("CALL") and (found := TARGET.search(inner))]
+        calls = [int(found[1], 16) for _, inner in body if without_predicate(inner).startswith("CALL") and (found := TARGET.search(inner))]
         if any(target in address_of and calls_others(code, address_of, target) for target in set(calls)) and (names := warp_counters(body)):
             yield f"{kernel}: the loop at {start:#x} counts in {', '.join(names)}"
 

@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <utility>
+#include <vector>
 
 #include <tbb/parallel_for.h>
 
@@ -184,7 +186,8 @@ private:
         const int node = std::clamp(int(x * (nodes - 1)), 0, nodes - 2);
         return {node, x * (nodes - 1) - node};
     }
-    /// Returns what the lookup of the finished table yields; `at` has the places of index, width and ratio.
+    /// Returns what the lookup of the finished table yields without its factor at the horizon; `at` has the places of
+    /// index, width and ratio.
     double looked_up(const Guess& guess, bool inside, double eta, const std::array<double, 3>& at,
                      const View& view) const {
         const double a = std::abs(view.w[0]), b = std::abs(view.w[1]);

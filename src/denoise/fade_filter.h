@@ -12,8 +12,9 @@
 
 namespace pertev {
 
-/// Sums the variance of the luminance of each pixel's mean, of which the signals have the parts. Light of samples that
-/// no guide shows is not filtered, so it does not count.
+/// Sums the variance of the luminance of each pixel's mean, of which the signals have the parts, as the filter counts
+/// it (EstimateVariance: not where normals vary). Light of samples that no guide shows is not filtered and does not
+/// count.
 struct GatherNoise {
     PictureSums sums;
     SignalsView signals; // neither filtered nor faded

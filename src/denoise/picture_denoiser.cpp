@@ -185,8 +185,10 @@ void PictureDenoiser::filter_mirrors(SignalsView other) {
     const uint32_t pixels = width_ * height_;
     launch(*queue_, "estimate_mirror_variance", pixels,
            EstimateMirrorVariance{guide_, sums_, mirrors_, other, width_, height_});
-    launch(*queue_, "gather_mirror_noise", pixels,
-           GatherMirrorNoise{sums_, mirrors_, other, static_cast<float>(features_), noise_.data()});
+    if (!history_) {
+        launch(*queue_, "gather_mirror_noise", pixels,
+               GatherMirrorNoise{sums_, mirrors_, other, static_cast<float>(features_), noise_.data()});
+    }
     launch(*queue_, "fade_signals", pixels, FadeSignals{other, true});
     SignalsView from = other, to = mirrored_;
     for (int pass = 0; pass < kPicturePasses; ++pass) {
@@ -209,7 +211,9 @@ Image PictureDenoiser::apply(Image picture) {
         EstimateVariance{smooth, sums_, from, history_ ? history_->of_sample() : nullptr, width_, height_, has_gloss_});
     if (history_) history_->mix(sums_, from, packed_, to, has_gloss_, camera_);
     const auto first_features = static_cast<float>(features_);
-    launch(*queue_, "gather_noise", pixels, GatherNoise{sums_, from, first_features, has_gloss_, noise_.data()});
+    if (!history_) {
+        launch(*queue_, "gather_noise", pixels, GatherNoise{sums_, from, first_features, has_gloss_, noise_.data()});
+    }
     launch(*queue_, "fade_signals", pixels, FadeSignals{from, has_gloss_});
     for (int pass = 0; pass < kPicturePasses; ++pass) {
         launch(*queue_, "even_pass", pixels,

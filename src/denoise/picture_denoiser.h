@@ -4,7 +4,7 @@
 // of frames (denoise/reconstruction.h), guided by the hits of rays through pixels' centres. The first samples' hits,
 // which every part of a picture has, decide which surfaces a pixel distinguishes. All else is added exactly
 // (denoise/exact_sums.h), so the parts' order does not affect the result. Every stage is one function for both devices.
-// The picture is biased: it blurs light where no guide shows an edge.
+// The picture is biased: it blurs light where no guide shows an edge, less the less noise there is (fade_filter.h).
 
 #include "denoise/denoiser.h"
 #include "denoise/gather_samples.h"
@@ -22,7 +22,7 @@ public:
     PictureDenoiser(Queue& queue, uint32_t width, uint32_t height, uint32_t samples, uint32_t frames);
 
     void begin(const NoisyFrame& centres, const CameraView& camera, const PixelWindow& window) override;
-    /// Returns kFeatures: samples 0 to kFeatures - 1 are required before any light, so that edges and textures are
+    /// Returns kFeatures: the surfaces of samples 0 to kFeatures - 1 are required, so that edges and textures are
     /// smooth even with few samples. Later ones are features too.
     uint32_t feature_samples() const override { return kFeatures; }
     void add_features(const NoisyFrame& frame, const SceneView& scene) override;

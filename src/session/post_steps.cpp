@@ -108,6 +108,7 @@ RenderSettings PostSteps::fit(const RenderSettings& settings) {
 bool PostSteps::begin(const Camera& camera, const RenderSettings& settings, Sink* sink, const PreviousScene& before,
                       Features features) {
     find_centres(camera, fit(settings), before, sink);
+    if (sink != nullptr && sink->should_stop()) return false; // some centres may be missing
     camera_ = camera, of_features_ = settings_of_features(settings, mirrors_.is_there());
     features_ = 0;
     // Mirrors need other samples, and a medium scatters a path by its length.

@@ -238,7 +238,7 @@ TEST_CASE("bases beneath layers lose little light, and sheen alone reflects at m
     CHECK(alone.b < 1.001);
 }
 
-TEST_CASE("a coat on a white mirror returns all light to 0.3 %, and so it does on rough white metal of any form") {
+TEST_CASE("a coat on a white mirror returns all light to 0.3 %, and so it does on rough white metal of GGX") {
     // The coat's own tables lose up to 0.3 %. Without what coated_table.h returns, rough metal would lose 5.5 %.
     const struct {
         const char* name;

@@ -1,8 +1,8 @@
 #pragma once
 
 // A coat on anything: a second, colourless dielectric interface with its own roughness and its own normal over a layer
-// that may absorb. What lies beneath gets at most the light that the coat transmits, from either side
-// (LayerTransmittance::pass), tinted by the refracted way in and out (coat_absorption.h).
+// that may absorb. Layers beneath get at most what the coat transmits, from either side (LayerTransmittance::pass;
+// rough metal also what it gets back, coated_table.h), tinted by the refracted way in and out (coat_absorption.h).
 //
 // Source: KHR_materials_clearcoat, whose layering by Fresnel's term of the view direction alone is not reciprocal;
 // here the coat's directional albedo for both directions replaces it. A bent normal's value is 0 where that and the
